@@ -1,8 +1,5 @@
-//! Cost of a tick of the simulated cell: at rest, with a moving part in the fingers, with the vise closing on a part in
-//! the fingers; cost of its digest, of saving and of restoring it.
-//!
-//! `cargo bench -p plant --bench cell`. The scenes are those of the determinism tests. Each sample begins with
-//! the same saved cell, so that all samples measure the same ticks.
+//! Cost of a tick of the simulated cell (at rest, with a part in the fingers, while the vise closes on it), of its
+//! digest, of saving and restoring. Each sample starts from the same saved cell: `cargo bench -p plant --bench cell`.
 
 #[path = "../tests/rig/mod.rs"]
 mod rig;
@@ -18,7 +15,6 @@ use rig::{
 
 const TICKS: usize = 25;
 
-/// A part of a taped scene, and the cell at its beginning.
 struct Stretch {
     cell: Vec<u8>,
     beats: Vec<Beat>,

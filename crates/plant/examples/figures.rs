@@ -1,5 +1,4 @@
-//! Prints figures of the simulation: cost of a tick (one core's time, Linux), error at rest, penetration of contacts,
-//! creep of a grip. The argument is the number of sub-steps.
+//! Prints figures of the simulation: cost of a tick, error at rest, penetration, creep. Argument: number of sub-steps.
 
 #![expect(clippy::print_stdout, reason = "figures are what it is for")]
 
@@ -59,8 +58,8 @@ fn cost(what: &str, rig: &mut Rig, work: impl FnOnce(&mut Rig)) {
     println!("{what:37} {ticks:6} ticks, {:6.1} us a tick, {:5.0} x real time", tick * 1e6, 0.040 / tick);
 }
 
-/// CPU time of this thread, s.
 fn seconds() -> f64 {
+    // CPU time of this thread, s
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").expect("a Linux with schedstat");
     let nanoseconds: f64 =
         text.split(' ').next().and_then(|word| word.parse().ok()).expect("nanoseconds first");

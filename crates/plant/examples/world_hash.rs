@@ -1,8 +1,5 @@
-//! Prints digests of two scenes with many contacts, one line each: `cargo run --release --example world_hash [SEED]`.
-//!
-//! The lines are the same in every run, in every process, and with and without `--release` (physics without
-//! optimisation takes a minute or two). `--ticks` prints the digest of every tick, for a comparison line by
-//! line if two outputs differ.
+//! Prints digests of two scenes with many contacts: `cargo run --release --example world_hash [SEED]`. The lines are
+//! equal in every run and every build. `--ticks` prints the digest of every tick.
 
 #![expect(clippy::print_stdout, reason = "figures are what it is for")]
 
@@ -11,7 +8,6 @@ mod rig;
 
 use rig::{Rig, scenes};
 
-/// A function that plays the scene of a seed.
 type Scene = fn(u64) -> Rig;
 
 fn main() {

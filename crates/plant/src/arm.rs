@@ -1,9 +1,7 @@
 //! The hydraulic arm: its servos follow a command under pressure; its joints sag without.
 //!
-//! Under pressure the command of the joints moves to its goal at a constant rate, and the joints follow it with a
-//! first-order lag, limited to their greatest speed. The lag is integrated exactly, so that an arm at rest is at its
-//! command within the resolution of the resolvers. The springs between hand and fingers ([`crate::gripper`]) model the
-//! deflection of the powered arm under load, not this module.
+//! Under pressure the joints follow their command with a first-order lag, up to their greatest speed. The lag is
+//! integrated exactly: an arm at rest is at its command. Its deflection under load is in [`crate::gripper`].
 //!
 //! Without pressure (III.6) each joint is a damper that yields to the weight of the links, to loads on them, and to
 //! contacts:
@@ -12,9 +10,8 @@
 //!   damping x rate = torque of the weights + torque of the contacts
 //! ```
 //!
-//! Inertia is neglected: at three degrees per second it has no effect. The equation is solved implicitly in the
-//! stiffness of the contacts, which is large, so that an arm on an obstacle comes to rest. The shot pin stops
-//! the shoulder, the joints' limits stop the others. The servos keep their command within their following
+//! Inertia is neglected: it has no effect at three degrees per second. The equation is implicit in the large stiffness
+//! of the contacts, so that an arm on an obstacle comes to rest. The servos keep their command within their following
 //! error, and jump back to it when the pressure returns.
 
 use geometry::{
@@ -29,37 +26,28 @@ use crate::{
     linkage::{Chain, END_PLATE, FOREARM, Load, UPPER_ARM},
 };
 
-/// Indices of shoulder, elbow and pitch among the joints.
-const SHOULDER: usize = 1;
+const SHOULDER: usize = 1; // indices of shoulder, elbow and pitch among the joints
 const ELBOW: usize = 2;
 const PITCH: usize = 3;
-/// Index of the link that the yaw joint turns.
-const WRIST: usize = 4;
+const WRIST: usize = 4; // index of the link that the yaw joint turns
 
 /// Distance of the upper arm's centre of mass from the shoulder, in (ASSUMED: in its middle).
 const UPPER_ARM_CENTRE: f64 = 0.5 * T3.upper_arm;
-/// Distance of the forearm's centre of mass from the elbow, in (ASSUMED: the actuators of the wrist sit at the elbow's
-/// end).
+/// Distance of the forearm's centre of mass from the elbow, in (ASSUMED: the wrist's actuators sit at the elbow).
 const FOREARM_CENTRE: f64 = 0.4 * T3.forearm;
-/// Distance of the wrist's centre of mass from the yaw axis, in (ASSUMED: halfway from the pitch axis to the end
-/// plate).
+/// Distance of the wrist's centre of mass from the yaw axis, in (ASSUMED).
 const WRIST_CENTRE: f64 = 1.5;
-/// Distance of the centre of mass of quick change and gripper from the yaw axis, in (ASSUMED: halfway from the end
-/// plate to the fingertips).
+/// Distance of the centre of mass of quick change and gripper from the yaw axis, in (ASSUMED: in the middle).
 pub const TOOL_CENTRE: f64 = T3.yaw_to_plate + T3.plate_to_tool / 2.0;
 
-/// An arm without pressure is at rest if no joint is faster than this, rad/s: a damped joint only approaches its end
-/// position.
+/// An arm without pressure is at rest if no joint is faster than this, rad/s.
 const AT_REST: f64 = 0.2 * (core::f64::consts::PI / 180.0);
-/// Full friction from this speed on, in/s. Below it, friction is proportional to speed, so that a sticking
-/// contact creeps more slowly than an arm at rest.
+/// Full friction from this speed on, in/s; below it, friction is proportional to speed.
 const STICKING: f64 = 0.1;
-/// Longest step of the servo equation, s.
-const STEP_S: f64 = 0.0025;
+const STEP_S: f64 = 0.0025; // longest step of the servo equation, s
 /// A joint within this distance of its command has settled, rad.
 const SETTLED: f64 = 0.005 * (core::f64::consts::PI / 180.0);
 
-/// A command that moves at constant speed from one set of joint angles to another.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 struct Ramp {
     from: Joints,
@@ -90,21 +78,16 @@ impl Ramp {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Arm {
     actuators: Actuators,
-    /// Damping of each joint without pressure, lb·in·s/rad.
-    dampers: [f64; 6],
+    dampers: [f64; 6], // damping of each joint without pressure, lb·in·s/rad
     joints: Joints,
     command: Ramp,
     pressure: bool,
-    /// Shoulder angle at the shot pin, which is extended without pressure, rad.
-    pin: f64,
-    /// Rates of the joints in the last step without pressure, rad/s.
-    rates: [f64; 6],
-    /// Time since the loss of pressure, s.
-    sinking: f64,
+    pin: f64,        // shoulder angle at the shot pin, which is extended without pressure, rad
+    rates: [f64; 6], // rates of the joints in the last step without pressure, rad/s
+    sinking: f64,    // time since the loss of pressure, s
 }
 
 impl Arm {
-    /// An arm at rest under pressure.
     #[must_use]
     pub fn new(actuators: &Actuators, joints: Joints) -> Self {
         Self {
@@ -119,7 +102,6 @@ impl Arm {
         }
     }
 
-    /// An arm with a gripper that has sagged from `joints` without pressure and come to rest.
     #[must_use]
     pub fn sunk_from(actuators: &Actuators, joints: Joints) -> Self {
         const NIGHT_S: u32 = 600;
@@ -131,7 +113,6 @@ impl Arm {
         arm
     }
 
-    /// The present load of quick change and gripper on this arm: their weight at their centre of mass.
     #[must_use]
     pub fn tool_weight(&self) -> Load {
         let chain = Chain::new(&self.joints);
@@ -161,7 +142,6 @@ impl Arm {
         self.command = Ramp { from: self.command.present(), goal, elapsed: 0.0, duration: seconds.max(0.0) };
     }
 
-    /// Stop the motion: the command keeps its present value.
     pub fn stop(&mut self) {
         self.command = Ramp::at(self.command.present());
     }
@@ -193,7 +173,6 @@ impl Arm {
         }
     }
 
-    /// A step without pressure.
     fn sag(&mut self, dt: f64, loads: &[Load]) {
         let chain = Chain::new(&self.joints);
         let mut torque = Vector6::zeros();
@@ -227,12 +206,10 @@ impl Arm {
         self.command = Ramp::at(command);
     }
 
-    /// The rates of the joints, rad/s. A joint that would pass a stop within the step ends at the stop, and the
-    /// others move as if it were fixed.
+    /// Rates of the joints, rad/s. A joint that would pass a stop ends at it; the others move as if it were fixed.
     fn give_way(&self, dt: f64, mut damping: Matrix6<f64>, mut torque: Vector6<f64>) -> [f64; 6] {
         let mut stopped = [None; 6];
         loop {
-            // Dampers are positive and contacts only add to them, so the matrix has an inverse.
             let solved = damping.cholesky().map_or_else(Vector6::zeros, |cholesky| cholesky.solve(&torque));
             let mut rates: [f64; 6] = solved.into();
             let mut beyond = false;
@@ -246,7 +223,6 @@ impl Arm {
                     low = low.max(self.pin);
                 }
                 let next = self.joints[joint] + *rate * dt;
-                // A joint that is already beyond a stop is not moved back to it.
                 let stop = next.clamp(low.min(self.joints[joint]), high.max(self.joints[joint]));
                 if next != stop {
                     stopped[joint] = Some((stop - self.joints[joint]) / dt);
@@ -263,13 +239,12 @@ impl Arm {
         }
     }
 
-    /// True joint angles, radians.
     #[must_use]
     pub const fn joints(&self) -> &Joints {
         &self.joints
     }
 
-    /// Command of the servos, radians.
+    /// Radians.
     #[must_use]
     pub fn command(&self) -> Joints {
         self.command.present()
@@ -302,7 +277,6 @@ impl Arm {
         !self.pressure && self.joints[SHOULDER] <= self.pin
     }
 
-    /// The true tool frame without load, inches.
     #[must_use]
     pub fn tool(&self) -> Frame {
         T3.forward(&self.joints)
@@ -323,8 +297,8 @@ fn weights(chain: &Chain, hydraulics: &Hydraulics) -> [Load; 3] {
     ]
 }
 
-/// Damping of the joints: with the load at HOME, a joint sinks at the droop rate. The base, which carries no load, has
-/// the damping of the shoulder; yaw and roll have that of the pitch.
+/// With the load at HOME, a joint sinks at the droop rate. The base has the damping of the shoulder; yaw and roll have
+/// that of the pitch.
 fn dampers(hydraulics: &Hydraulics) -> [f64; 6] {
     let chain = Chain::new(&HOME_JOINTS);
     let tool = Load::weight(END_PLATE, chain.along(END_PLATE, TOOL_CENTRE), hydraulics.tool_weight);
@@ -342,7 +316,6 @@ mod tests {
         Arm::new(&Actuators::default(), HOME_JOINTS)
     }
 
-    /// Sags for `seconds` with a gripper on.
     fn sag(arm: &mut Arm, seconds: f64) {
         for _ in 0..(seconds / 0.04).round() as u32 {
             arm.advance(0.04, false, &[arm.tool_weight()]);

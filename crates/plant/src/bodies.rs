@@ -1,7 +1,5 @@
-//! Collision shapes of robot and devices, from the cell description and their positions.
-//!
-//! Links of the arm are capsules, hands and furniture are boxes, plates and round parts are cylinders. The simulated
-//! cell and the path check ([`crate::room`]) both make their bodies here, and therefore use the same shapes.
+//! Collision shapes of robot and devices, from the cell description and their positions. The simulated cell and the
+//! path check ([`crate::room`]) share them. Links are capsules, hands and furniture boxes.
 
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
@@ -33,7 +31,6 @@ mod chain {
     pub const HAND: u8 = 5;
 }
 
-/// Fixed bodies: the furniture, and the turret as a cylinder.
 #[must_use]
 pub fn standing(cell: &CellDescription, furniture: &[Block]) -> Vec<Body> {
     let (radius, half_height) = turret(cell);
@@ -97,7 +94,6 @@ pub fn quick_change(cell: &CellDescription, tool: &Frame) -> [Body; 2] {
     ]
 }
 
-/// Body and ears of a gripper, in its tool frame.
 #[must_use]
 pub fn body_boxes(cell: &CellDescription, gripper: &Gripper) -> [(Frame, Inches); 3] {
     let (body, size) = palm(gripper);
@@ -113,8 +109,8 @@ pub fn palm(gripper: &Gripper) -> (Frame, Inches) {
     (Frame { position: middle, rotation: Rotation::identity() }, Inches::from(gripper.body))
 }
 
-/// The gripper on the robot: its body, and its fingers at the opening set by the air (in), without the deflection of
-/// their springs, because the collision check needs the depth to which the arm has moved them.
+/// The gripper on the robot. Its fingers are at the opening set by the air (in), without the deflection of their
+/// springs: the check needs the depth to which the arm has moved them.
 #[must_use]
 pub fn worn(cell: &CellDescription, gripper: &Gripper, tool: &Frame, opening: f64) -> Vec<Body> {
     let tool = to_pose(tool);
@@ -128,26 +124,22 @@ pub fn worn(cell: &CellDescription, gripper: &Gripper, tool: &Frame, opening: f6
     boxes.chain(fingers).map(|body| body.at(chain::HAND)).collect()
 }
 
-/// A part at a pose in metres.
 #[must_use]
 pub fn part(kind: &PartType, pose: &Pose) -> Body {
     let (shape, turn) = Solid::of(kind).shape();
     Body::new(kind.name.clone(), Kind::Part, *pose * turn, shape)
 }
 
-/// A part that the robot holds, at a pose in metres.
 #[must_use]
 pub fn held(kind: &PartType, pose: &Pose) -> Body {
     Body { kind: Kind::HeldPart, ..part(kind, pose) }.at(chain::HAND)
 }
 
-/// The movable jaw of the vise at its frame.
 #[must_use]
 pub fn movable_jaw(cell: &CellDescription, jaw: &Frame) -> Vec<Body> {
     jaw_blocks(&cell.vise).iter().map(|block| Body::from(&block.moved(jaw))).collect()
 }
 
-/// A gripper that is not on the robot, by its name and the pose of its tool frame in metres.
 #[must_use]
 pub fn stored(cell: &CellDescription, gripper: &Gripper, name: &'static str, at: &Pose) -> Vec<Body> {
     let change = &cell.quick_change;

@@ -1,9 +1,8 @@
 //! Positions of the grippers, on the robot, in a holster or on the floor, and their changes.
 //!
-//! The state of the ring decides, not the controller's command ([`crate::quick_change`]). A gripper that the ring holds
-//! moves with the arm. A released gripper lands on the holster under it, or falls. It rests on its holster, and slides
-//! with an A plate that engages it. A gripper is *mated* while its pins touch, locked or not: only then it has air and
-//! its sensors are connected. The bodies of a gripper at rest in its holster are not simulated.
+//! A gripper that the ring holds moves with the arm. A released gripper lands on the holster under it, or falls. A
+//! gripper is *mated* while its pins touch, locked or not: only then it has air and sensors. Grippers at rest in their
+//! holsters are not simulated.
 
 use geometry::frame::Frame;
 use interfaces::device::{HolsterSensors, QuickChangeSensors, QuickChangeValves};
@@ -20,31 +19,23 @@ use crate::{
 
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub(crate) enum GripperPlace {
-    /// The ring of the quick change holds it.
     Robot,
     /// It is on a holster (0 right, 1 left, 2 centre).
     Holster(usize, Perch),
-    /// It was released away from a holster.
     Fallen,
-    /// A person has removed it from the cell.
     Away,
 }
 
-/// Quick change, holsters, and the places of the grippers.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(crate) struct Changer {
     description: QuickChange,
     ring: Ring,
     holsters: [Holster; 3],
-    /// Places of the parts gripper, the v-gripper and the tool gripper.
-    places: [GripperPlace; 3],
+    places: [GripperPlace; 3], // places of the parts gripper, the v-gripper and the tool gripper
     mated: Option<Hand>,
-    /// The holster whose lips are over the ears of the gripper in the ring.
-    under_lips: Option<usize>,
-    /// The four sensors of each holster.
-    eyes: [[Switch; 4]; 3],
-    /// The two sensors of the ring: locked, unlocked.
-    reflectance: [Switch; 2],
+    under_lips: Option<usize>, // the holster whose lips are over the ears of the gripper in the ring
+    eyes: [[Switch; 4]; 3],    // the four sensors of each holster
+    reflectance: [Switch; 2],  // the two sensors of the ring: locked, unlocked
 }
 
 impl Changer {
@@ -79,7 +70,6 @@ impl Changer {
         self.mated
     }
 
-    /// The gripper that the ring holds.
     pub(crate) fn carried(&self) -> Option<Hand> {
         ROBOT_HANDS.into_iter().find(|hand| self.place(*hand) == Some(GripperPlace::Robot))
     }
@@ -124,7 +114,6 @@ impl Changer {
         !self.places.iter().any(|place| matches!(place, GripperPlace::Holster(which, _) if *which == holster))
     }
 
-    /// Landing place of a gripper that the ring releases at `robot`.
     fn land(&self, robot: &Frame) -> GripperPlace {
         let caught = self.holsters.iter().enumerate().find_map(|(which, holster)| {
             let perch = holster.catch(&holster.offset(robot)).filter(|_| self.is_empty(which))?;
@@ -151,8 +140,7 @@ impl Changer {
         None
     }
 
-    /// A time step of a gripper on its holster: it falls as far as there is room, slides with an engaged A
-    /// plate, and is locked if the ring has just closed.
+    /// A time step of a gripper on its holster: it falls, slides with an engaged A plate, and is locked by the ring.
     fn step_on_holster(&mut self, hand: Hand, which: usize, mut perch: Perch, step: &Step) -> GripperPlace {
         let holster = &self.holsters[which];
         perch.fall(step.dt);
@@ -180,7 +168,6 @@ impl Changer {
         })
     }
 
-    /// The sensors of the ring and the id pins.
     pub(crate) fn sensors(&mut self, hysteresis: f64) -> QuickChangeSensors {
         let [locked, unlocked] = self.ring.beyond();
         QuickChangeSensors {
@@ -190,8 +177,7 @@ impl Changer {
         }
     }
 
-    /// Move the ring for `dt` seconds with the robot's tool frame at `robot`. It catches or releases grippers,
-    /// whose places are updated.
+    /// Move the ring for `dt` seconds with the robot's tool frame at `robot`, and update the grippers' places.
     pub(crate) fn advance(&mut self, dt: f64, robot: &Frame, valves: &QuickChangeValves) -> Changes {
         let mut changes = Changes::default();
         let was_locked = self.ring.locked();
@@ -225,12 +211,8 @@ impl Changer {
         Some(place)
     }
 
-    /// Place a gripper that is not on the robot in a holster, numbered from 0 in the order of the grippers'
-    /// ids, or remove it from the cell. Returns the gripper.
-    ///
-    /// # Errors
-    /// [`WorkstationError`] if the gripper or holster does not exist, the quick change has the gripper, or
-    /// another one is in the holster. The state is then unchanged.
+    /// Place a gripper in a holster, numbered from 0 in the order of the ids, or remove it from the cell. Returns the
+    /// gripper. On error, the state is unchanged.
     pub(crate) fn hang(&mut self, id: u8, holster: Option<usize>) -> Result<Hand, WorkstationError> {
         let mut hands = ROBOT_HANDS.into_iter().zip(0..);
         let named = hands.find(|(hand, _)| hand.end_effector_id() == Some(id));
@@ -283,21 +265,17 @@ impl Changer {
     }
 }
 
-/// Changes of the grippers in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Changes {
     /// The ring has released this gripper away from a holster.
     pub(crate) fell: Option<Hand>,
     /// The lips of a holster have detached this gripper from the ring.
     pub(crate) torn: Option<Hand>,
-    /// The pins of this gripper no longer touch: it has lost its air.
     pub(crate) parted: Option<Hand>,
 }
 
-/// Inputs of the grippers in a step of the simulation.
 struct Step {
     dt: f64,
     robot: Frame,
-    /// The ring has just reached its locked end.
-    locks: bool,
+    locks: bool, // the ring has just reached its locked end
 }

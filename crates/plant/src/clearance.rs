@@ -1,10 +1,8 @@
-//! Collision check of the robot: in each tick, arm, gripper, and the carried part are checked against all other
-//! bodies of the cell, and against the arm itself.
+//! Collision check of the robot: each tick, arm, gripper and held part against all other bodies and the arm itself.
 //!
-//! The simulated arm follows its path even through contact, like a hydraulic arm, so collisions must be computed from
-//! geometry. The cell description lists permitted contacts ([`crate::description::Permits`]). Of the pairs that are not
-//! always permitted, the check keeps, each tick, those that touch or are nearer than a margin, with their depth and
-//! direction. The caller knows the present command and decides which are permitted.
+//! The simulated arm follows its path even through contact, so collisions come from geometry. Of the pairs that are not
+//! always permitted ([`crate::description::Permits`]), the check keeps those that touch or are near. The caller knows
+//! the present command, and decides which are permitted.
 
 use std::{borrow::Cow, collections::BTreeSet};
 
@@ -20,12 +18,9 @@ use crate::{
 /// Least depth of a contact, in: resting parts penetrate less.
 pub const LEAST_DEPTH: f64 = 0.001;
 
-/// Least overlap of a new part with a body that blocks it, m.
-const OVERLAP: Real = 1e-4;
-/// Bodies whose centres are nearer than this to each other overlap, m.
-const SAME_PLACE: Real = 1e-3;
+const OVERLAP: Real = 1e-4; // least overlap of a new part with a body that blocks it, m
+const SAME_PLACE: Real = 1e-3; // bodies whose centres are nearer than this to each other overlap, m
 
-/// A body that can collide, metres.
 #[derive(Clone, Debug)]
 pub struct Body {
     pub name: Cow<'static, str>,
@@ -38,12 +33,10 @@ pub struct Body {
 }
 
 impl Body {
-    /// A body that does not belong to the arm.
     pub fn new(name: impl Into<Cow<'static, str>>, kind: Kind, pose: Pose, shape: SharedShape) -> Self {
         Self { name: name.into(), kind, aabb: shape.compute_aabb(&pose), pose, shape, chain: 0 }
     }
 
-    /// The same body at a position in the chain of the arm.
     #[must_use]
     pub fn at(self, chain: u8) -> Self {
         Self { chain, ..self }
@@ -53,7 +46,6 @@ impl Body {
         (&self.name, self.kind)
     }
 
-    /// True if it is the same body at the same pose.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         self.id() == other.id() && self.pose == other.pose && self.aabb == other.aabb
@@ -75,7 +67,6 @@ impl Body {
     }
 }
 
-/// Two bodies that touch or are near each other.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Contact {
     pub mover: String,
@@ -84,26 +75,22 @@ pub struct Contact {
     pub obstacle_kind: Kind,
     /// Penetration depth, in; a negative value is a distance.
     pub depth: f64,
-    /// Position of the contact, world, in.
-    pub at: [f64; 3],
+    pub at: [f64; 3], // world, in
     /// Unit vector, world: direction from the obstacle to the mover.
     pub away: [f64; 3],
 }
 
 impl Contact {
-    /// True if they touch.
     #[must_use]
     pub fn touches(&self) -> bool {
         self.depth > LEAST_DEPTH
     }
 
-    /// Name and kind of the mover.
     #[must_use]
     pub fn mover(&self) -> (&str, Kind) {
         (&self.mover, self.mover_kind)
     }
 
-    /// Name and kind of the obstacle.
     #[must_use]
     pub fn obstacle(&self) -> (&str, Kind) {
         (&self.obstacle, self.obstacle_kind)
@@ -120,11 +107,9 @@ impl Contact {
     }
 }
 
-/// The present contacts, with the ones that began earlier marked.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Clearance {
-    /// Distance within which pairs are reported, m.
-    margin: Real,
+    margin: Real, // distance within which pairs are reported, m
     contacts: Vec<Contact>,
     touching: BTreeSet<(String, String)>,
 }
@@ -135,14 +120,12 @@ impl Clearance {
         self.margin = metres(margin.max(0.0));
     }
 
-    /// Contacts and near pairs of the last check, each pair of names once, at its deepest point; without pairs that may
-    /// always touch.
+    /// Contacts and near pairs of the last check, each pair of names once, at its deepest point.
     #[must_use]
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts
     }
 
-    /// The contacts and near pairs as an owned list.
     #[must_use]
     pub fn into_contacts(self) -> Vec<Contact> {
         self.contacts
@@ -174,7 +157,6 @@ impl Clearance {
         begun
     }
 
-    /// Record a mover and an obstacle if they are near each other.
     fn look(&mut self, mover: &Body, obstacle: &Body) {
         let met = query::contact(&obstacle.pose, &*obstacle.shape, &mover.pose, &*mover.shape, self.margin);
         let Ok(Some(met)) = met else { return };

@@ -1,7 +1,4 @@
 //! Inches to metres and back: the only place where the cell's units become SI (docs/design/units.md "Cell").
-//!
-//! The controller, the description file and the interface of this crate use inches, pounds and radians; rapier and the
-//! viewers use metres, newtons and kilograms.
 
 use geometry::frame::{Frame, Vector};
 use nalgebra::{Matrix3, Rotation3};
@@ -28,19 +25,16 @@ pub const fn newtons(pounds: f64) -> Real {
     pounds * NEWTONS_PER_POUND
 }
 
-/// A point or displacement in metres from one in inches.
 #[must_use]
 pub fn to_metres(v: &Vector) -> Metres {
     Metres::new(metres(v.x), metres(v.y), metres(v.z))
 }
 
-/// A point or displacement in inches from one in metres.
 #[must_use]
 pub fn to_inches(v: Metres) -> Vector {
     Vector::new(inches(v.x), inches(v.y), inches(v.z))
 }
 
-/// A pose in metres from a frame in inches.
 #[must_use]
 pub fn to_pose(frame: &Frame) -> Pose {
     let axis = |v: Vector| Metres::new(v.x, v.y, v.z);
@@ -48,7 +42,6 @@ pub fn to_pose(frame: &Frame) -> Pose {
     Pose::from_parts(to_metres(&frame.position), Rotation::from_mat3(&columns).normalize())
 }
 
-/// A frame in inches from a pose in metres.
 #[must_use]
 pub fn to_frame(pose: &Pose) -> Frame {
     let axis = |v: Metres| {
@@ -74,7 +67,7 @@ mod tests {
     use geometry::frame::rotation_by;
 
     #[test]
-    fn a_frame_comes_back() {
+    fn frame_round_trips_through_metres() {
         let frame = Frame {
             position: Vector::new(68.0, -44.0, -4.0),
             rotation: rotation_by(&Vector::new(0.3, -2.0, 1.1)),

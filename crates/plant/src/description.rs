@@ -1,9 +1,7 @@
 //! The cell description: one TOML file with positions, sizes and forces of all objects in the cell.
 //!
-//! All values in the file are in inches, degrees, pounds and seconds, in world coordinates. Reading reports all
-//! errors at once: invalid TOML, keys that are missing, unknown or misspelt, values of the wrong type, and
-//! numbers and names that [`CellDescription::validate`] rejects. Each error has its entry, its place in the
-//! text, the expected and the found value.
+//! All values are in inches, degrees, pounds and seconds, in world coordinates. Reading reports all errors at once,
+//! each with its entry, its place in the text, the expected and the found value.
 
 mod check;
 mod contact;
@@ -32,8 +30,7 @@ pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChang
 /// The file of a cell description in a data directory.
 pub const CELL: &str = "cell.toml";
 
-/// Codes of the problems, and the range of magnitudes: ten times the largest number of a cell, because geometry and
-/// solver overflow beyond.
+/// Codes of the problems, and the range of magnitudes: ten times the largest number of a cell.
 const KIND: FileKind = FileKind {
     whole: "the description",
     syntax: "cell.syntax",
@@ -43,23 +40,19 @@ const KIND: FileKind = FileKind {
     magnitudes: [1e-6, 1e5],
 };
 
-/// The text of a cell description as a source.
 #[must_use]
 pub fn source(text: &str) -> Source {
     Source { name: CELL.to_owned(), text: text.into() }
 }
 
-/// Errors of reading a cell description.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DescriptionError {
     #[error("the cell description {path} cannot be read: {source}")]
     Unreadable {
         path: String,
-        /// The error of the operating system.
-        source: std::io::Error,
+        source: std::io::Error, // the error of the operating system
     },
-    /// The file or the description has mistakes.
     #[error("the cell description cannot be used: {}", .0.in_line())]
     Mistakes(Diagnostics),
 }
@@ -67,12 +60,10 @@ pub enum DescriptionError {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CellDescription {
-    /// Name of the cell, for display.
     pub name: String,
     /// Greatest distance of a part from its place after a command has put it down, in.
     #[serde(default = "placing_tolerance")]
     pub placing_tolerance: f64,
-    /// Steps and stiffness of the simulation.
     pub physics: Physics,
     pub robot: Robot,
     pub quick_change: QuickChange,
@@ -80,7 +71,6 @@ pub struct CellDescription {
     pub holsters: Holsters,
     pub drum: Drum,
     pub pedestal: Pedestal,
-    /// Common values of each kind of sensor.
     pub sensors: SensorModels,
     pub camera: Camera,
     pub vise: Vise,
@@ -88,12 +78,10 @@ pub struct CellDescription {
     pub tray_shape: TrayShape,
     #[serde(default)]
     pub fixture: Vec<Fixture>,
-    /// Places where parts stay because of their shape.
     #[serde(default)]
     pub nest: Vec<Nest>,
     #[serde(default)]
     pub contact: Permits,
-    /// Parts that can be in the cell.
     pub part: Vec<PartType>,
 }
 
@@ -101,19 +89,16 @@ const fn yes() -> bool {
     true
 }
 
-/// Steps and stiffness of the simulation.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Physics {
     /// Steps in a tick of 40 ms.
     pub substeps: u32,
-    /// Take several sub-steps of the physics at once while only kinematic bodies move, or a part hangs in motionless
-    /// fingers.
+    /// Take several sub-steps at once while only kinematic bodies move, or a part hangs in motionless fingers.
     #[serde(default = "yes")]
     pub long_steps: bool,
     pub solver_iterations: usize,
-    /// Natural frequency of contacts, Hz.
-    pub contact_frequency: f64,
+    pub contact_frequency: f64, // Hz
     pub contact_damping: f64,
 }
 
@@ -121,18 +106,13 @@ pub struct Physics {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
-    /// First-order lag of the joint servos, s.
-    pub servo_lag_s: f64,
-    /// Greatest speed of each joint, degrees/s.
-    pub joint_speeds: [f64; 6],
-    /// Joint angles at the start, degrees.
-    pub start: [f64; 6],
-    /// Stiffness of arm, wrist and fingers together at the fingertips, lb/in.
-    pub stiffness: f64,
+    pub servo_lag_s: f64,       // First-order lag of the joint servos, s
+    pub joint_speeds: [f64; 6], // greatest speed of each joint, degrees/s
+    pub start: [f64; 6],        // joint angles at the start, degrees
+    pub stiffness: f64,         // stiffness of arm, wrist and fingers together at the fingertips, lb/in
     pub upper_arm_radius: f64,
     pub forearm_radius: f64,
     pub wrist_radius: f64,
-    /// Behaviour without pressure.
     #[serde(default)]
     pub hydraulics: Hydraulics,
 }
@@ -140,17 +120,11 @@ pub struct Robot {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grippers {
-    /// Weight of each gripper, lb.
-    pub weight: f64,
-    /// Speed of the free fingers of the v-gripper and the tool gripper, in/s.
-    pub jaw_speed: f64,
-    /// The parts gripper, end effector 1.
-    pub parts: Gripper,
-    /// The v-gripper, end effector 2.
-    pub v: Gripper,
-    /// The tool gripper, end effector 3.
-    pub tool: Gripper,
-    /// The force sensor of the tool gripper.
+    pub weight: f64,    // lb
+    pub jaw_speed: f64, // speed of the free fingers of the v-gripper and the tool gripper, in/s
+    pub parts: Gripper, // end effector 1
+    pub v: Gripper,     // end effector 2
+    pub tool: Gripper,  // end effector 3
     pub force: ForceGages,
 }
 
@@ -158,24 +132,18 @@ pub struct Grippers {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Gripper {
-    /// Size of the body along tool X, Y, Z, in.
-    pub body: [f64; 3],
-    /// Length, thickness and width of a finger, in.
-    pub fingers: [f64; 3],
-    /// Moving mass of a finger, lb.
-    pub finger_weight: f64,
+    pub body: [f64; 3],     // size of the body along tool X, Y, Z, in
+    pub fingers: [f64; 3],  // Length, thickness and width of a finger, in
+    pub finger_weight: f64, // moving mass of a finger, lb
     pub opening: [f64; 2],
     pub initial_opening: f64,
-    /// Coefficient of friction of the pads.
     pub friction: f64,
     /// V-grooves along tool Z in the pads: position of their axis along tool X, in.
     pub groove: Option<f64>,
     /// Force that a blocked finger gains for each inch by which the air would have moved it, lb/in.
     pub compressibility: f64,
-    /// Force of a finger at full pressure, lb.
-    pub greatest_force: f64,
-    /// Time until the force is zero when both sides are vented, s.
-    pub vent_time_s: f64,
+    pub greatest_force: f64, // force of a finger at full pressure, lb
+    pub vent_time_s: f64,    // time until the force is zero when both sides are vented, s
     pub sensors: GripperSensors,
 }
 
@@ -183,18 +151,15 @@ pub struct Gripper {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct GripperSensors {
-    /// Counts of the potentiometer at opening 0.
-    pub potentiometer_offset: f64,
-    /// Counts of the potentiometer per inch.
-    pub potentiometer_scale: f64,
+    pub potentiometer_offset: f64, // at opening 0
+    pub potentiometer_scale: f64,  // per inch
     /// Counts of the left and right strain gages without force; 0 for a gripper without strain gages.
     #[serde(default)]
     pub strain_offsets: [f64; 2],
     /// Counts of the left and right strain gages per pound.
     #[serde(default)]
     pub strain_scales: [f64; 2],
-    /// Greatest noise, counts.
-    pub noise: f64,
+    pub noise: f64, // counts
 }
 
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -203,12 +168,10 @@ pub struct Pedestal {
     pub location: String,
     /// Position of the fingertips of the hand, which points up, on the axis of the table; world, in.
     pub position: [f64; 3],
-    /// Direction of the radial line from the robot, about +Z from +X, degrees.
-    pub azimuth: f64,
+    pub azimuth: f64, // direction of the radial line from the robot, about +Z from +X, degrees
     /// Name of the fixture for its stand, which is not bolted to the floor and can be moved (II.1.2.3).
     pub stand: String,
-    /// Stiffness of stand, hand and fingers together at the fingertips, lb/in.
-    pub stiffness: f64,
+    pub stiffness: f64, // stiffness of stand, hand and fingers together at the fingertips, lb/in
     pub hand: Gripper,
     pub table: RotaryTable,
 }
@@ -224,53 +187,36 @@ pub struct RotaryTable {
     pub square: f64,
     /// A motor angle, and the table angle that results from it.
     pub flip: [f64; 2],
-    /// Speed of the motor, degrees/s.
-    pub speed: f64,
-    /// Its acceleration, degrees/s².
-    pub acceleration: f64,
-    /// Counts of the potentiometer at table angle 0.
-    pub potentiometer_offset: f64,
-    /// Counts of the potentiometer per degree of the table.
-    pub potentiometer_scale: f64,
-    /// Greatest noise, counts.
-    pub noise: f64,
+    pub speed: f64,                // degrees/s
+    pub acceleration: f64,         // degrees/s²
+    pub potentiometer_offset: f64, // at table angle 0
+    pub potentiometer_scale: f64,  // per degree of the table
+    pub noise: f64,                // counts
 }
 
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
-    /// Centre of the image plane in the tool frame, in.
-    pub position: [f64; 3],
-    /// Angle of the optical axis to tool X, towards the fingers, degrees.
-    pub tilt: f64,
-    /// Half width of the picture at the reference range, in.
-    pub view: f64,
-    /// Range at which `view` holds, mm.
-    pub reference_range_mm: f64,
-    /// Greatest error of the centroid from the fast flood, in.
-    pub flood_noise: f64,
-    /// Greatest error of the centroid from the second picture, in.
-    pub precise_noise: f64,
-    /// Greatest error of the angle, degrees.
-    pub angle_noise: f64,
-    /// Greatest error of a measured length, in.
-    pub shape_noise: f64,
+    pub position: [f64; 3],      // centre of the image plane in the tool frame, in
+    pub tilt: f64,               // angle of the optical axis to tool X, towards the fingers, degrees
+    pub view: f64,               // half width of the picture at the reference range, in
+    pub reference_range_mm: f64, // range at which `view` holds, mm
+    pub flood_noise: f64,        // greatest error of the centroid from the fast flood, in
+    pub precise_noise: f64,      // greatest error of the centroid from the second picture, in
+    pub angle_noise: f64,        // greatest error of the angle, degrees
+    pub shape_noise: f64,        // greatest error of a measured length, in
     /// Greatest difference between a measured length and that of the part asked for, in.
     pub shape_tolerance: f64,
     /// Fraction of a face that must be visible for the part to be detected.
     pub least_share: f64,
-    /// Parts with at most this gap between them are one blob in the picture, in.
-    pub resolution: f64,
+    pub resolution: f64, // parts with at most this gap between them are one blob in the picture, in
     /// Exposures in the order of the variations: least and greatest reflectance that each exposes correctly.
     pub exposures: Vec<[f64; 2]>,
-    /// Apparent increase in length of parts that are too bright, in.
-    pub bloom: f64,
+    pub bloom: f64, // apparent increase in length of parts that are too bright, in
     /// Probability that a visible part is not recognised.
     pub failure: f64,
-    /// Ticks until the answer to a fast flood.
-    pub flood_ticks: u32,
-    /// Ticks until the answer to a second picture.
-    pub precise_ticks: u32,
+    pub flood_ticks: u32,   // to a fast flood
+    pub precise_ticks: u32, // to a second picture
 }
 
 /// The programmable vise; its frame has X into the vise, Y to the left, Z up, parallel to the world's axes.
@@ -280,39 +226,27 @@ pub struct Vise {
     pub location: String,
     /// The origin: front plane of the jaws, inner face of the fixed jaw, top of the jaws; world, in.
     pub position: [f64; 3],
-    /// Depth, thickness and height of a jaw, in.
-    pub jaw: [f64; 3],
-    /// Extent of the body in X, in.
-    pub body_x: [f64; 2],
-    /// Extent of the body in Y, in.
-    pub body_y: [f64; 2],
-    /// Height of the body under the ledge, in.
-    pub body_height: f64,
-    /// Speed of the jaw, in/s.
-    pub speed: f64,
-    /// Closing force, lb.
-    pub force: f64,
-    /// Coefficient of friction of the jaws.
+    pub jaw: [f64; 3],    // Depth, thickness and height of a jaw, in
+    pub body_x: [f64; 2], // in
+    pub body_y: [f64; 2], // in
+    pub body_height: f64, // height of the body under the ledge, in
+    pub speed: f64,       // in/s
+    pub force: f64,       // lb
     pub friction: f64,
     /// Its programs; the first one is selected at the start.
     pub program: Vec<ViseProgram>,
 }
 
-/// A program of the vise: the step in the jaws that clamps a family of parts, and its openings.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ViseProgram {
     pub name: String,
-    /// Back of the step, from the front plane of the jaws, in.
-    pub back: f64,
-    /// Depth of its clamping faces behind the inner faces of the jaws, in.
-    pub depth: f64,
+    pub back: f64,  // back of the step, from the front plane of the jaws, in
+    pub depth: f64, // depth of its clamping faces behind the inner faces of the jaws, in
     /// Floor of the step, from the top of the jaws, in; negative.
     pub ledge: f64,
-    /// Distance of its clamping faces when open, in.
-    pub opening_open: f64,
-    /// Distance of its clamping faces when partially closed, in.
-    pub opening_partial: f64,
+    pub opening_open: f64,    // distance of its clamping faces when open, in
+    pub opening_partial: f64, // distance of its clamping faces when partially closed, in
 }
 
 /// A place whose shape keeps parts in position: a cradle, a pot, a pocket. It is made of fixtures.
@@ -320,12 +254,9 @@ pub struct ViseProgram {
 #[serde(deny_unknown_fields)]
 pub struct Nest {
     pub location: String,
-    /// Sector of the location; 0 if it has none.
     #[serde(default)]
-    pub sector: u16,
-    /// The parts that fit into it.
+    pub sector: u16, // of the location; 0 if it has none
     pub parts: Vec<String>,
-    /// The frame of a part in the nest.
     pub seat: Points,
     /// Tolerance within which a part can be machined there; without it no part can.
     pub machining: Option<Tolerance>,
@@ -336,45 +267,36 @@ pub struct Nest {
 #[serde(deny_unknown_fields)]
 pub struct Tolerance {
     pub inches: f64,
-    /// Of its axes, degrees.
-    pub degrees: f64,
+    pub degrees: f64, // of its axes, degrees
 }
 
-/// A tray at an MBD unit.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tray {
     pub unit: String,
     pub centre: [f64; 2],
-    /// Top of the floor, z, in.
-    pub floor: f64,
-    /// Centres of the sectors, x and y, in, from sector 1.
-    pub sectors: Vec<[f64; 2]>,
+    pub floor: f64,             // top of the floor, z, in
+    pub sectors: Vec<[f64; 2]>, // centres, x and y, in, from sector 1
 }
 
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrayShape {
-    /// Inner side of the square, in.
-    pub inside: f64,
+    pub inside: f64, // inner side of the square, in
     pub wall: f64,
-    /// Height of the rim above the floor, in.
-    pub rim: f64,
+    pub rim: f64, // height of the rim above the floor, in
     pub floor_thickness: f64,
-    /// Greatest offset in x and y of a part that is put down at random, in.
-    pub random_offset: f64,
+    pub random_offset: f64, // greatest offset in x and y of a part that is put down at random, in
 }
 
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fixture {
-    /// Its name and that of its URDF link.
-    pub name: String,
+    pub name: String, // also of its URDF link
     pub centre: [f64; 3],
     pub size: [f64; 3],
-    /// Rotation about +Z, degrees.
     #[serde(default)]
-    pub azimuth: f64,
+    pub azimuth: f64, // about +Z, degrees
     /// Tilt of the top towards the rotated +X, degrees.
     #[serde(default)]
     pub tilt: f64,
@@ -394,21 +316,16 @@ pub enum Shape {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartType {
-    /// Object name of the task data.
-    pub name: String,
+    pub name: String, // object name of the task data
     #[serde(default)]
     pub shape: Shape,
-    /// Size in the part frame (X down as presented, Z along the part), in.
-    pub size: [f64; 3],
-    /// Weight, lb.
-    pub weight: f64,
-    /// Vision id (VII.7.6); 0 for none.
+    pub size: [f64; 3], // size in the part frame (X down as presented, Z along the part), in
+    pub weight: f64,    // lb
     #[serde(default)]
-    pub vision_id: u16,
+    pub vision_id: u16, // VII.7.6; 0 for none
     /// Reflectance: the fraction of the light that it reflects.
     #[serde(default = "half")]
     pub reflectance: f64,
-    /// True if it is a tool of the machine: it fits into the drum, its X along the drum's.
     #[serde(default)]
     pub tool: bool,
     /// True if it is machined in the vise on a side that was not machined before.
@@ -440,7 +357,6 @@ impl Nest {
         self.seat.frame().unwrap_or_else(Frame::identity)
     }
 
-    /// True if parts of this kind fit into it.
     #[must_use]
     pub fn takes(&self, kind: &PartType) -> bool {
         self.parts.contains(&kind.name)
@@ -466,9 +382,6 @@ impl Robot {
 
 impl CellDescription {
     /// Read a description from TOML text and check it.
-    ///
-    /// # Errors
-    /// All errors of the text with their places.
     pub fn from_toml(text: &str) -> Result<Self, Diagnostics> {
         Document::load(&source(text), KIND, |description: &Self, stand_ins, problems| {
             let (unfit, positive) = description.problems(stand_ins);
@@ -484,10 +397,8 @@ impl CellDescription {
         Document::parse(text, KIND).0.place(entry)
     }
 
-    /// Read a description from a file and check it.
-    ///
-    /// # Errors
-    /// [`DescriptionError`] if the file cannot be read or has mistakes.
+    /// Read a description from a file and check it. Fails with [`DescriptionError`] if the file cannot be read or has
+    /// mistakes.
     pub fn load(path: &Path) -> Result<Self, DescriptionError> {
         let text = os_io::files::read_text(path)
             .map_err(|source| DescriptionError::Unreadable { path: path.display().to_string(), source })?;

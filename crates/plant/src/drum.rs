@@ -1,16 +1,14 @@
 //! The tool drum of the machine tool at its transfer position: the place of a tool, fingers, and a strike plate.
 //!
-//! The drum's frame is the tool frame of the location TOOL-TRNS: X into the drum. A tool is inserted along X.
-//! Near the end, detents resist with a force that rises like that of a spring; afterwards they keep the tool
-//! with a smaller force. Closed fingers, or another tool, stop it with a hundred pounds. The fingers centre a
-//! tool when they close, and hold it more strongly than the robot: the robot's hold slides first.
+//! The drum's frame is the tool frame of TOOL-TRNS: X into the drum. Near the end of the insertion, detents resist with
+//! a rising force; afterwards they keep the tool with a smaller one. Closed fingers stop it with a hundred pounds. The
+//! fingers hold a tool more strongly than the robot, whose hold slides first.
 //!
-//! Detents and obstacles are one spring along X. Its far end, the anchor, slides when the force reaches its
-//! limit, so that a tool comes to rest completely, and a force sensor reads a steady value.
+//! Detents and obstacles are one spring along X whose far end slides at the limit of the force: a tool comes to rest,
+//! and a force sensor reads a steady value.
 //!
-//! The strike plate is next to the tool. Its front stops the fingertips of an open gripper; its shoulders stop
-//! open fingers that slide to the right (tool -Z) or arrive from there and are over the tool. They are ordinary
-//! bodies, and the fingers deflect on their springs.
+//! The strike plate is next to the tool. Its front stops the fingertips of an open gripper; its shoulders stop open
+//! fingers that slide to the right (tool -Z) or arrive from there.
 
 use geometry::frame::{Frame, Rotation, Vector};
 use rapier3d_f64::math::Real;
@@ -23,38 +21,30 @@ use crate::{
     scene::Block,
 };
 
-/// Stiffness of detents and obstacles, N/m.
-const STIFFNESS: Real = 1.0e5;
+const STIFFNESS: Real = 1.0e5; // stiffness of detents and obstacles, N/m
 /// Damping of detents and obstacles, N·s/m: about critical for a tool of 6 lb.
 const DAMPING: Real = 1.0e3;
-/// Greatest distance from the axis at which a tool is in front of the drum, in.
-const BESIDE: f64 = 2.0;
+const BESIDE: f64 = 2.0; // greatest distance from the axis at which a tool is in front of the drum, in
 
-/// Position of a tool in the drum or in front of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entering {
     pub left: f64,
     pub aside: f64,
-    /// Angle of its axis to the drum's, radians.
-    pub angle: f64,
+    pub angle: f64, // angle of its axis to the drum's, radians
 }
 
 impl Entering {
-    /// The error of fingers that cannot close on a tool at this position.
     pub(crate) fn not_in_place(self, tool: String) -> WorkstationError {
         let distance = libm::hypot(self.left, self.aside);
         WorkstationError::NotInPlace { tool, distance, degrees: self.angle.to_degrees() }
     }
 }
 
-/// The tool in the drum or in front of it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Pocketed {
     pub part: usize,
-    /// Position of the anchor of the spring along X, m.
-    anchor: Real,
-    /// True if it arrived while the fingers were closed.
-    barred: bool,
+    anchor: Real, // position of the anchor of the spring along X, m
+    barred: bool, // true if it arrived while the fingers were closed
     /// True if the drum fixes it: by its fingers, or by the detents alone.
     pub fast: bool,
 }
@@ -65,7 +55,6 @@ pub struct Drum {
     frame: Frame,
     description: Description,
     closed: bool,
-    /// The tool in the drum or in front of it.
     pub tool: Option<Pocketed>,
 }
 
@@ -81,7 +70,6 @@ impl Drum {
         &self.description.location
     }
 
-    /// True if the fingers are closed.
     #[must_use]
     pub fn closed(&self) -> bool {
         self.closed
@@ -127,7 +115,6 @@ impl Drum {
         before.then_some(Entering { left, aside, angle })
     }
 
-    /// Admit a tool that arrives at the fingers.
     pub fn admit(&mut self, part: usize, entering: &Entering) {
         self.tool = Some(Pocketed { part, anchor: metres(-entering.left), barred: self.closed, fast: false });
     }
@@ -141,7 +128,6 @@ impl Drum {
             && entering.angle <= seated_degrees.to_radians()
     }
 
-    /// True if the fingers hold the tool.
     #[must_use]
     pub fn grips(&self, pocketed: &Pocketed) -> bool {
         self.closed && !pocketed.barred
@@ -186,7 +172,6 @@ impl Drum {
     }
 }
 
-/// The strike plate, world.
 #[must_use]
 pub fn strike_plate(frame: &Frame, drum: &Description) -> Vec<Block> {
     let block = |plate: &crate::description::Plate| {

@@ -36,10 +36,8 @@ pub fn finger_rest(description: &Description, side: Real, opening: f64) -> Pose 
 
 pub struct Mount<'a> {
     pub hand: RigidBodyHandle,
-    /// Pose of the tool frame, m.
-    pub tool: &'a Pose,
-    /// Stiffness of both fingers together at the tips, lb/in.
-    pub stiffness: f64,
+    pub tool: &'a Pose, // m
+    pub stiffness: f64, // stiffness of both fingers together at the tips, lb/in
     pub group: Group,
 }
 
@@ -47,10 +45,8 @@ impl Finger {
     /// True if a body that it may touch is nearer than `distance`, m.
     pub fn is_near(&self, world: &PhysicsWorld, distance: Real) -> bool {
         world.narrow_phase.contact_pairs_with(self.collider).any(|pair| {
-            // The pair with a removed part stays in the list until the next step.
             let pair = [pair.collider1, pair.collider2].map(|collider| world.colliders.get(collider));
             let [Some(one), Some(other)] = pair else { return false };
-            // The pair with a held part stays in the list, but is no longer updated.
             one.collision_groups().test(other.collision_groups())
                 && one.compute_aabb().loosened(distance).intersects(&other.compute_aabb())
                 && query::distance(one.position(), one.shape(), other.position(), other.shape())
@@ -81,8 +77,7 @@ impl Finger {
             .collision_groups(groups(group, Group::ALL & !group));
         let collider = world.insert_collider(collider, Some(body));
         let linear = newtons(stiffness) / metres(1.0) / 2.0;
-        // The moment arm of a fingertip is half the finger's length. The angular springs about the middle are
-        // so stiff that they add only a hundredth to the deflection of the tip.
+        // The angular springs about the middle add only a hundredth to the deflection of the tip.
         let angular = 100.0 * linear * x * x;
         let inertia = mass / 3.0 * (x * x + z * z);
         let mut data = GenericJointBuilder::new(JointAxesMask::empty())

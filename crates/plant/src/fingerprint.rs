@@ -1,25 +1,19 @@
 //! The bytes of a value for a digest: all its variable data, without its description.
 //!
-//! A digest of the cell is taken in every tick, so it must be cheap. Every device contains its part of the cell
-//! description, which is most of its data and never changes: fields with the name `description` are omitted. Numbers
-//! are little-endian in their own width; sequences and texts are preceded by their length, enums by their variant.
+//! A digest is taken every tick, so it must be cheap: fields with the name `description`, which never change, are
+//! omitted. Numbers are little-endian; sequences and texts are preceded by their length, enums by their variant.
 
 use core::fmt;
 
 use serde::{Serialize, Serializer, ser};
 
-/// Name of the fields that never change.
-const CONSTANT: &str = "description";
+const CONSTANT: &str = "description"; // name of the fields that never change
 
-/// Append the bytes of a value.
-///
-/// # Errors
-/// [`fmt::Error`] if the value cannot be serialised.
+/// Append the bytes of a value. Fails with [`fmt::Error`] if the value cannot be serialised.
 pub fn append<T: Serialize + ?Sized>(value: &T, bytes: &mut Vec<u8>) -> fmt::Result {
     value.serialize(Writer(bytes))
 }
 
-/// Appends to bytes.
 struct Writer<'a>(&'a mut Vec<u8>);
 
 impl Writer<'_> {

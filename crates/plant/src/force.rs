@@ -1,8 +1,6 @@
-//! The force sensor of the tool gripper (III.3.8). It measures the forces on fingers and tool, and their weight.
-//!
-//! The load is the force of the springs between the hand and fingers and tool, so it includes every contact without
-//! lag. The sensor adds its own load's weight, whose direction turns with the robot, an offset of the bridges, and
-//! noise: CAL-SENSOR must determine the reading without contact (V.1.1). Only four of the six axes are connected.
+//! The force sensor of the tool gripper (III.3.8): the force of the springs between hand and fingers, the weight of its
+//! own load, an offset of the bridges, and noise. CAL-SENSOR must determine the reading without contact (V.1.1). Only
+//! four of the six axes are connected.
 
 use geometry::frame::Vector;
 use interfaces::device::{FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, MOMENT_COUNTS_PER_IN_LB};
@@ -12,10 +10,8 @@ use crate::{description::ForceGages, noise::Noise, sensor::Analog};
 /// A force and a moment about the tool point, in the axes of the tool: lb and in·lb.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
-    /// Force, lb.
-    pub force: Vector,
-    /// Moment about the tool point, right-hand, in·lb.
-    pub moment: Vector,
+    pub force: Vector,  // lb
+    pub moment: Vector, // moment about the tool point, right-hand, in·lb
 }
 
 impl Wrench {
@@ -30,7 +26,6 @@ impl Wrench {
         Self { force: self.force + other.force, moment: self.moment + other.moment }
     }
 
-    /// The moment about another point of the tool frame.
     #[must_use]
     pub fn about(&self, point: &Vector) -> Vector {
         self.moment - point.cross(&self.force)

@@ -1,16 +1,13 @@
 //! Friction of a flat pad on a face: its effect on sliding and turning within a time step.
 //!
-//! Force and moment of friction share one limit, an ellipse whose axes are the friction force and its moment on
-//! the touched area, and act against the motion at the end of the step. This gives a monotonic equation for one
-//! number, the impulse per unit of remaining speed, which is solved by bisection.
+//! Force and moment of friction share one limit, an ellipse, and act against the motion at the end of the step. This is
+//! a monotonic equation for the impulse per unit of remaining speed, solved by bisection.
 
 use rapier3d_f64::math::Real;
 
-/// Number of bisections: more than the bits of a number.
-const ROUNDS: u32 = 60;
+const ROUNDS: u32 = 60; // number of bisections: more than the bits of a number
 
-/// Motion of a body in the plane of the pads, at its middle: two velocities (m/s) and the angular velocity about the
-/// normal (rad/s).
+/// Motion of a body in the plane of the pads, at its middle: m/s, and rad/s about the normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Along the line from the middle to the pads.
@@ -22,19 +19,14 @@ pub struct Motion {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rubbed {
-    /// Mass, kg.
-    pub mass: Real,
-    /// Moment of inertia about the normal, kg·m².
-    pub inertia: Real,
-    /// Distance from the middle of the body to that of the touched area, m.
-    pub reach: Real,
-    /// Lever arm of friction on the touched area, m.
-    pub arm: Real,
+    pub mass: Real,    // kg
+    pub inertia: Real, // moment of inertia about the normal, kg·m²
+    pub reach: Real,   // distance from the middle of the body to that of the touched area, m
+    pub arm: Real,     // lever arm of friction on the touched area, m
 }
 
 impl Rubbed {
-    /// The motion after a step in which friction can give an impulse of up to `limit` (N·s); `None` if it stops
-    /// the body.
+    /// The motion after a step with an impulse of up to `limit` (N·s); `None` if friction stops the body.
     #[must_use]
     pub fn after(&self, motion: &Motion, limit: Real) -> Option<Motion> {
         let stop = [self.mass * motion.along, self.mass * motion.across];
@@ -64,7 +56,6 @@ impl Rubbed {
         libm::hypot(point, motion.turn * self.arm)
     }
 
-    /// The remaining motion if friction gives `impulse` per unit of remaining speed.
     fn damped(&self, motion: &Motion, impulse: Real) -> Motion {
         let (by_mass, by_inertia) = (impulse / self.mass, impulse / self.inertia);
         let (a, b) = (1.0 + by_mass, by_mass * self.reach);

@@ -1,5 +1,4 @@
-//! The conditions in which a pair of fingers grips, keeps and releases a part, from the geometry of the part
-//! between them ([`crate::squeeze`]) and the force of its air.
+//! When a pair of fingers grips, keeps and releases a part, from its geometry ([`crate::squeeze`]) and the air's force.
 
 use rapier3d_f64::math::{Pose, Real, Vector};
 
@@ -12,21 +11,16 @@ use crate::{
     squeeze::{Pads, Squeeze},
 };
 
-/// Least force of a finger that holds a part, lb.
-const LEAST_FORCE: f64 = 0.25;
-/// Greatest distance between a pad and a face in contact, m.
-const TOUCHING: Real = 1e-4;
+const LEAST_FORCE: f64 = 0.25; // least force of a finger that holds a part, lb
+const TOUCHING: Real = 1e-4; // greatest distance between a pad and a face in contact, m
 /// A part between the fingers is nearer to the fingertips than this and its own radius, m.
 const REACH: Real = 0.2;
 
-/// Action of a pair of fingers on the part between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grasp {
-    /// They hold nothing, as before.
     Empty,
     Take,
     Keep,
-    /// They release it, or have lost it.
     Release,
 }
 
@@ -68,8 +62,8 @@ pub fn widest(opening: f64, parts: impl Iterator<Item = (usize, Squeeze)>) -> Op
         .max_by(|(_, a), (_, b)| a.width.total_cmp(&b.width))
 }
 
-/// Opening at which a part stops the fingers, in. A free part is drawn to the middle. A `fast` part, which
-/// another device holds, stops the nearer finger, and with it the other, because the fingers are coupled.
+/// Opening at which a part stops the fingers, in. A `fast` part, which another device holds, stops the nearer finger,
+/// and with it the other one.
 #[must_use]
 pub fn stop(squeeze: &Squeeze, fast: bool) -> f64 {
     let aside = if fast { 2.0 * squeeze.centre.abs() } else { 0.0 };
@@ -92,8 +86,7 @@ pub fn pads(gripper: &Gripper) -> Pads {
     Pads { x: [-length, 0.0], z: [-width / 2.0, width / 2.0], groove }
 }
 
-/// The light beams between the fingers that parts interrupt, one bit each; `opening` in inches, `parts` with
-/// pose in the tool frame and half size, m.
+/// The light beams that parts interrupt, one bit each; `opening` in inches, `parts` with pose and half size, m.
 pub fn broken_beams(opening: f64, parts: impl Iterator<Item = (Pose, Vector)>) -> u8 {
     let near: Vec<_> =
         parts.filter(|(pose, half)| is_near(pose.translation.length(), half.length())).collect();
@@ -102,8 +95,8 @@ pub fn broken_beams(opening: f64, parts: impl Iterator<Item = (Pose, Vector)>) -
     broken.enumerate().fold(0, |bits, (beam, is_broken)| bits | (u8::from(is_broken) << beam))
 }
 
-/// The light beams in the tool frame: pairs of end points on the pads, metres. ASSUMED: two columns of four, 0.5 in to
-/// either side of the middle of a finger, 0.10 to 1.20 in behind the tips.
+/// The light beams in the tool frame, as end points on the pads, m. ASSUMED: two columns of four, 0.5 in to either side
+/// of the middle of a finger, 0.10 to 1.20 in behind the tips.
 fn beams(opening: f64) -> impl Iterator<Item = (Vector, Vector)> {
     let half = metres(opening / 2.0);
     let columns = [metres(-0.5), metres(0.5)];

@@ -1,10 +1,8 @@
 //! A gripper: two coupled fingers, driven by air, and the part that they hold. The robot has three, the pedestal one.
 //!
-//! [`Air`] converts the flow of the valves ([`Supply`]) to an opening and a force: the flow moves free fingers,
-//! and increases the force of blocked ones; without flow both stay constant. The fingers are two bodies
-//! attached to the hand by springs with the combined stiffness of arm, wrist and fingers, so contacts of the
-//! gripper have finite forces: an arm that over-travels by 0.015 in against the vise presses with 30 lb.
-//! Geometry determines when fingers are blocked ([`crate::squeeze`]); the held part is then a [`Hold`].
+//! [`Air`] converts the flow of the valves ([`Supply`]) to an opening and a force. The fingers are two bodies on
+//! springs with the combined stiffness of arm, wrist and fingers: an arm that over-travels by 0.015 in presses with 30
+//! lb. Geometry determines when fingers are blocked ([`crate::squeeze`]); the held part is then a [`Hold`].
 
 use geometry::frame::Vector as Inches;
 use interfaces::device::GripSensors;
@@ -23,17 +21,14 @@ use crate::{
     sensor::Analog,
 };
 
-/// Fingers farther than this from a blocking part are free, in.
-const FREE_GAP: f64 = 0.001;
+const FREE_GAP: f64 = 0.001; // fingers farther than this from a blocking part are free, in
 /// Speed below which fingers that press a part with their whole force are at rest, in/s.
 const SWAY: f64 = 0.05;
-/// Time for which seal friction holds freed fingers before trapped air moves them, s; a part that slides out is clear
-/// by then.
+/// Time for which seal friction holds freed fingers before trapped air moves them, s.
 const BREAKAWAY_TIME: f64 = 0.25;
 /// Distance of a body from a finger within which they can touch in the next step, m, without the travel of the hand.
 const TOUCHABLE: Real = 2e-3;
-/// Fingers can sleep when none of their points has moved faster than this for half a second, m/s (rad/s). Their
-/// remaining motion is then less than 1e-11 m.
+/// Fingers can sleep when none of their points has moved faster than this for half a second, m/s (rad/s).
 const STILL: Real = 1e-9;
 /// Speed of fingers that trapped air drives, in/s: that of the coarse flow, which the same ports limit.
 pub const EXPANSION_SPEED: f64 = 4.0;
@@ -93,8 +88,8 @@ impl Air {
         self.speed
     }
 
-    /// True if the fingers did not move in the last step, and this supply neither moves them nor changes their
-    /// force. Fingers that press with their whole force follow the sway of a part, which is not a motion.
+    /// True if the fingers did not move in the last step and this supply has no effect. Fingers with their whole force
+    /// follow the sway of a part, which is not a motion.
     #[must_use]
     pub fn stands(&self, supply: &Supply) -> bool {
         let presses = supply.flow < 0.0 && self.force >= self.greatest_force;
@@ -127,8 +122,7 @@ impl Air {
         self.relieved = self.force < force;
     }
 
-    /// Trapped air moves fingers that are no longer blocked: after a part was pulled out, they close to less than its
-    /// width.
+    /// Trapped air moves fingers that are no longer blocked.
     fn expand(&mut self, dt: f64, stop: f64) {
         let gap = self.opening - stop;
         if self.force <= 0.0 || gap <= FREE_GAP {
@@ -176,13 +170,11 @@ impl Description {
     }
 }
 
-/// The gripper's bodies, air and hold.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Gripper {
     description: Description,
     pub air: Air,
-    /// The held part, by its index in the list of parts.
-    pub hold: Option<(usize, Hold)>,
+    pub hold: Option<(usize, Hold)>, // by its index in the list of parts
     /// True if its slide in this hold was reported.
     pub slip_reported: bool,
     hand: RigidBodyHandle,
@@ -214,25 +206,21 @@ impl Gripper {
         Self { description: description.clone(), air, hold: None, slip_reported: false, hand, fingers, shown }
     }
 
-    /// The body to which the fingers are attached. Its pose is the tool frame without load.
     #[must_use]
     pub fn hand(&self) -> RigidBodyHandle {
         self.hand
     }
 
-    /// Bodies of the left and the right finger.
     #[must_use]
     pub fn finger_bodies(&self) -> [RigidBodyHandle; 2] {
         self.fingers.map(|finger| finger.body)
     }
 
-    /// True if a body is one of its fingers.
     #[must_use]
     pub fn is_finger(&self, body: RigidBodyHandle) -> bool {
         self.fingers.iter().any(|finger| finger.body == body)
     }
 
-    /// Colliders of the left and the right finger.
     #[must_use]
     pub fn finger_colliders(&self) -> [ColliderHandle; 2] {
         self.fingers.map(|finger| finger.collider)
@@ -244,8 +232,7 @@ impl Gripper {
         self.fingers.map(|finger| finger_rest(&self.description, finger.side, self.air.opening()))
     }
 
-    /// From now on the fingers sleep while they are undisturbed, and their springs are then not computed. They
-    /// wake when the air moves them, when a body touches them, and when the hand moves. See [`Gripper::stand`].
+    /// From now on the fingers sleep while they are undisturbed; their springs are then not computed.
     pub fn let_fingers_sleep(&self, world: &mut PhysicsWorld) {
         for finger in &self.fingers {
             let activation = world.bodies[finger.body].activation_mut();
@@ -255,8 +242,8 @@ impl Gripper {
         }
     }
 
-    /// Stop the hand. A moving kinematic body never sleeps and keeps attached bodies awake. Only a held part
-    /// needs this, because it may slide at a small change of its load.
+    /// Stop the hand: a moving kinematic body keeps attached bodies awake. Only a held part, which may slide, needs
+    /// this.
     pub fn stand(&self, world: &mut PhysicsWorld) {
         let led = self.hold.is_some();
         let kind = if led { RigidBodyType::KinematicPositionBased } else { RigidBodyType::Fixed };
@@ -285,8 +272,7 @@ impl Gripper {
         }
     }
 
-    /// Move empty fingers kinematically with the hand if no body is near them: springs without a load are not
-    /// computed. Otherwise the springs move the fingers.
+    /// Move empty fingers with the hand if no body is near them; otherwise the springs move them.
     pub fn carry_fingers(&self, world: &mut PhysicsWorld) {
         let hand = &world.bodies[self.hand];
         let travel = (hand.next_position().translation - hand.position().translation).length();
@@ -304,7 +290,6 @@ impl Gripper {
         }
     }
 
-    /// From now on the springs move the fingers.
     pub fn hang_fingers(&self, world: &mut PhysicsWorld) {
         self.become_fingers(world, RigidBodyType::Dynamic);
     }
@@ -371,7 +356,6 @@ impl Gripper {
         }
     }
 
-    /// Hold a gripper that has fallen, like a person who picks it up.
     pub fn pick_up(&self, world: &mut PhysicsWorld) {
         world.bodies[self.hand].set_body_type(RigidBodyType::KinematicPositionBased, true);
         for finger in &self.fingers {
@@ -404,7 +388,6 @@ impl Gripper {
         (left * offset(1.0)).lerp(&(right * offset(-1.0)), 0.5)
     }
 
-    /// Read the sensors; `beams` has a bit for each interrupted light beam.
     pub fn sensors(&self, noise: &mut Noise, beams: u8) -> GripSensors {
         self.description.read(&self.air, noise, beams)
     }

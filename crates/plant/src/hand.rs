@@ -8,16 +8,11 @@ use crate::{
     jaws::Supply,
 };
 
-/// A pair of fingers: one of the robot's grippers, or the pedestal's hand.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub(crate) enum Hand {
-    /// The parts gripper, end effector 1.
-    Parts,
-    /// The v-gripper, end effector 2.
-    V,
-    /// The tool gripper, end effector 3.
-    Tool,
-    /// The hand of the Active Pedestal.
+    Parts, // end effector 1
+    V,     // end effector 2
+    Tool,  // end effector 3
     Pedestal,
 }
 

@@ -3,15 +3,13 @@
 //! Simulated contacts between a squeezed light part and two heavy pads creep, and a rigid joint never slides. A
 //! hold combines both: springs with force limits between the pads' body and the part.
 //!
-//! * Along the pads (X, Z, and rotation about Y) the limit is friction, for force and moment together: an ellipse whose
-//!   axes are the friction force and its moment on the touched area. Below the limit the part *sticks* to its springs
-//!   and nothing creeps; beyond it the part *slides* without springs, against friction, until it is at rest and sticks
-//!   again.
-//! * Across the pads (Y, and the tilts about X and Z) the limit is the pads' force. A greater force pushes the part
-//!   aside, and the pads return it to their middle, flush, as soon as they are stronger.
+//! * Along the pads (X, Z, about Y) the limit is friction: an ellipse of force and moment. Below it the part *sticks*
+//! to its springs; beyond it the part *slides* without springs until it is at rest.
+//! * Across the pads (Y, about X and Z) the limit is the pads' force. A greater force pushes the part aside until the
+//! pads are stronger again.
 //!
-//! The springs act at the middle of the part, where the six axes are decoupled, so that the solver is exact without
-//! iteration. The limits apply where the pads touch, and a bar that is gripped at its end droops about that point.
+//! The springs act at the middle of the part, where the six axes are decoupled and the solver is exact without
+//! iteration. The limits apply where the pads touch.
 
 use rapier3d_f64::math::Vector;
 use rapier3d_f64::prelude::*;
@@ -27,14 +25,12 @@ use crate::{
 const AXES: [JointAxis; 6] =
     [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ, JointAxis::AngX, JointAxis::AngY, JointAxis::AngZ];
 
-/// Stiffness of a hold below its limits.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Stiffness {
     pub linear: Real,
     pub angular: Real,
 }
 
-/// Force and friction of the pads.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Clamp {
     pub force: Real,
@@ -44,21 +40,16 @@ pub struct Clamp {
 /// Mass and inertia of the held part, for the damping of the springs.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Load {
-    /// Mass, kg.
-    pub mass: Real,
-    /// Greatest principal moment of inertia, kg·m².
-    pub inertia: Real,
+    pub mass: Real,    // kg
+    pub inertia: Real, // greatest principal moment of inertia, kg·m²
 }
 
-/// Greatest forces of the pads at the touched area, and its position.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 struct Limits {
     friction: Real,
     normal: Real,
-    /// About X, Y, Z, N·m.
-    moments: [Real; 3],
-    /// The middle of the touched area, in the axes of the pads' body.
-    point: Vector,
+    moments: [Real; 3], // about X, Y, Z, N·m
+    point: Vector,      // the middle of the touched area, in the axes of the pads' body
 }
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -68,13 +59,10 @@ pub struct Hold {
     part: RigidBodyHandle,
     /// Position of the part without load, changed by slides: its middle, and its rotation from flush.
     nominal: Pose,
-    /// Rest pose of the springs: the nominal pose, pushed aside.
-    rest: Pose,
-    /// Rotation from the part's axes to those in which it lies flush.
-    attitude: Rotation,
+    rest: Pose,         // rest pose of the springs: the nominal pose, pushed aside
+    attitude: Rotation, // rotation from the part's axes to those in which it lies flush
     stiffness: Stiffness,
-    /// Damping of the springs along and about the axes, N·s/m and N·m·s/rad.
-    damping: [Real; 2],
+    damping: [Real; 2], // damping of the springs along and about the axes, N·s/m and N·m·s/rad
     load: Load,
     limits: Limits,
     grip: Grip,
@@ -83,8 +71,7 @@ pub struct Hold {
     rubbed: Vector,
 }
 
-/// Whether friction holds the part along the pads: it slides when the load exceeds friction, and sticks again when
-/// friction stops it.
+/// The part sticks if friction holds it along the pads; otherwise it slides.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 enum Grip {
     Sticks,
@@ -146,8 +133,8 @@ impl Hold {
         self.grip == Grip::Sticks
     }
 
-    /// Load of the part on the pads' body, including its weight: position of the part's middle (m), force (N) and
-    /// moment about it (N·m), in the axes of the pads' body.
+    /// Load of the part on the pads' body with its weight: its middle (m), force (N), moment (N·m); axes of the pads'
+    /// body.
     #[must_use]
     pub fn carries(&self, world: &PhysicsWorld) -> (Vector, Vector, Vector) {
         let present = self.present(world);
@@ -160,7 +147,6 @@ impl Hold {
         (present.translation, force, moment)
     }
 
-    /// Set the limits from force, friction and touched area.
     pub fn set_clamp(&mut self, world: &mut PhysicsWorld, clamp: Clamp, squeeze: &Squeeze) {
         let normal = 2.0 * clamp.force;
         let friction = normal * clamp.friction;
@@ -190,7 +176,6 @@ impl Hold {
         }
     }
 
-    /// Pose of the part in the axes of the pads' body, with the rotation measured from flush.
     fn present(&self, world: &PhysicsWorld) -> Pose {
         let pads = world.bodies[self.pads].position();
         let part = pads.inv_mul(world.bodies[self.part].position());
@@ -243,8 +228,7 @@ impl Hold {
         let turn = on_the_side_of(&Rotation::IDENTITY, present.rotation * self.nominal.rotation.inverse());
         let turn = turn.to_scaled_axis();
         let aside = Vector::Y * beyond(away.y, self.limits.normal / linear);
-        // Load on the springs at the point where the pads touch: their moment, and the moment of their force at the
-        // middle.
+        // Moments are about the point where the pads touch.
         let arm = self.nominal.translation - self.limits.point;
         let force = (away - aside) * -linear;
         let moment = turn * -angular + arm.cross(force);
@@ -281,8 +265,7 @@ impl Hold {
         self.set_rest(world, self.nominal);
     }
 
-    /// Called when the stronger grip has released the part: draw it back to the middle of the pads, flush. It
-    /// does not move along the pads.
+    /// The stronger grip has released the part: draw it to the middle of the pads, flush, not along them.
     pub fn recover(&mut self, world: &mut PhysicsWorld) {
         self.nominal.translation.y = 0.0;
         let twist = Rotation::from_xyzw(0.0, self.nominal.rotation.y, 0.0, self.nominal.rotation.w);
@@ -291,7 +274,6 @@ impl Hold {
         self.set_rest(world, self.nominal);
     }
 
-    /// The part has slid without springs: set the rest pose to the present one.
     fn follow(&mut self, present: &Pose) {
         let touched = self.nominal.inverse_transform_point(self.limits.point);
         self.nominal.translation.x = present.translation.x;
@@ -322,7 +304,6 @@ impl Hold {
     }
 }
 
-/// Set all springs, or only those across the pads.
 fn set_springs(joint: &mut GenericJoint, stiffness: Stiffness, damping: [Real; 2], grip: Grip) {
     for (index, axis) in AXES.into_iter().enumerate() {
         let along = matches!(axis, JointAxis::LinX | JointAxis::LinZ | JointAxis::AngY);
@@ -334,7 +315,6 @@ fn set_springs(joint: &mut GenericJoint, stiffness: Stiffness, damping: [Real; 2
     }
 }
 
-/// The component of a rotation about Y.
 fn about_y(rotation: Rotation) -> Rotation {
     let twist = Rotation::from_xyzw(0.0, rotation.y, 0.0, rotation.w);
     if twist.length_squared() > 0.0 { twist.normalize() } else { Rotation::IDENTITY }
@@ -345,7 +325,6 @@ fn beyond(value: Real, limit: Real) -> Real {
     value - value.clamp(-limit, limit)
 }
 
-/// A pose rotated about a point.
 fn about(point: Vector, turn: Vector, pose: Pose) -> Pose {
     if turn == Vector::ZERO {
         return pose;

@@ -1,12 +1,10 @@
 //! Holsters: a gripper that is not on the robot hangs in one by its ears.
 //!
-//! A gripper released over a holster drops until its ears lie on the cheeks. It can then slide forward (tool
-//! +Z) to the seat, where lips over the ears prevent lifting and a detent keeps it in place. Four proximity
-//! sensors detect the ears (III.3.4): two large ones from the side, two small ones at the seat.
+//! A released gripper drops until its ears lie on the cheeks. It then slides forward (tool +Z) to the seat, where lips
+//! prevent lifting and a detent keeps it. Four proximity sensors detect the ears (III.3.4).
 //!
-//! All coordinates are in the frame of the holster: the tool frame of a gripper that rests on it and is not yet slid
-//! forward. Its X points down, along the gripper. All grippers have the same ears, so any of them fits; the controller
-//! decides which one belongs where.
+//! Coordinates are in the frame of the holster: the tool frame of a gripper that rests on it and is not yet slid
+//! forward, X down. All grippers have the same ears, so any of them fits.
 
 use geometry::frame::{Frame, Rotation, Vector, rotation_vector};
 use serde::{Deserialize, Serialize};
@@ -17,23 +15,16 @@ use crate::{
 };
 
 const GRAVITY: f64 = 386.1;
-/// Distance of the ears under the B plate, in.
-const UNDER_PLATE: f64 = 1.0;
-/// Gap between the body of a gripper and the cheeks, and between ears and lips, in.
-const GAP: f64 = 0.25;
-/// Thickness of cheeks and lips, in.
-const THICK: f64 = 1.0;
-/// Distance of a lip behind the front end of the ears in the seat, in: a gripper slid back by more than half the travel
-/// is free of it.
+const UNDER_PLATE: f64 = 1.0; // distance of the ears under the B plate, in
+const GAP: f64 = 0.25; // gap between the body of a gripper and the cheeks, and between ears and lips, in
+const THICK: f64 = 1.0; // thickness of cheeks and lips, in
+/// Distance of a lip behind the front end of the ears in the seat, in.
 const LIP: f64 = 0.75;
 /// Greatest tilt of a released gripper that still lands on the cheeks, radians (3 degrees).
 const ASKEW: f64 = 0.052_36;
-/// Greatest depth under its rest to which the robot can press a gripper, in.
-const PRESSED: f64 = 0.10;
-/// Greatest distance from the rest of a gripper at this holster, in.
-const NEAR: f64 = 6.0;
-/// Travel of a gripper under the lips before they stop it, in.
-const LIP_PLAY: f64 = 0.15;
+const PRESSED: f64 = 0.10; // greatest depth under its rest to which the robot can press a gripper, in
+const NEAR: f64 = 6.0; // greatest distance from the rest of a gripper at this holster, in
+const LIP_PLAY: f64 = 0.15; // travel of a gripper under the lips before they stop it, in
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Holster {
@@ -43,22 +34,18 @@ pub struct Holster {
     description: Holsters,
 }
 
-/// Position of a gripper relative to its rest on a holster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
     pub up: f64,
     pub aside: f64,
     pub forward: f64,
-    /// Angle to the rest, radians.
-    pub angle: f64,
+    pub angle: f64, // radians
 }
 
-/// A gripper on its holster, or dropping onto it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Perch {
     pub up: f64,
-    /// Speed of falling, in/s.
-    pub speed: f64,
+    pub speed: f64, // in/s
     pub forward: f64,
 }
 
@@ -72,7 +59,6 @@ impl Perch {
         }
     }
 
-    /// True if it lies on the holster.
     #[must_use]
     pub fn rests(&self) -> bool {
         self.up <= 0.0
@@ -86,13 +72,11 @@ impl Holster {
         Self { name: name.into(), frame, description: description.clone() }
     }
 
-    /// True if a gripper is near this holster.
     #[must_use]
     pub fn is_near(&self, gripper: &Frame) -> bool {
         (gripper.position - self.frame.position).norm() < NEAR
     }
 
-    /// Position of a gripper's tool frame in this holster.
     #[must_use]
     pub fn offset(&self, gripper: &Frame) -> Offset {
         let here = self.frame.inverse().compose(gripper);
@@ -104,13 +88,11 @@ impl Holster {
         }
     }
 
-    /// The tool frame of a gripper on this holster.
     #[must_use]
     pub fn gripper(&self, perch: &Perch) -> Frame {
         self.frame.shifted(Vector::new(-perch.up, 0.0, perch.forward))
     }
 
-    /// The position of a gripper in the seat.
     #[must_use]
     pub fn seated(&self) -> Perch {
         Perch { up: 0.0, speed: 0.0, forward: self.description.seat }
@@ -141,7 +123,6 @@ impl Holster {
             && offset.aside.abs() <= beside
     }
 
-    /// True if the ears lie on the cheeks under the lips: lifting is prevented.
     #[must_use]
     pub fn holds_down(&self, offset: &Offset) -> bool {
         self.under_lips(offset) && offset.up.abs() <= LIP_PLAY
@@ -153,8 +134,8 @@ impl Holster {
         self.under_lips(offset) && offset.up > LIP_PLAY
     }
 
-    /// Distance of the ears of a gripper at any place beyond the ranges of the four sensors, in the order of
-    /// the bits of [`interfaces::device::HolsterSensors`], in; negative within range.
+    /// Distance of the ears of a gripper beyond the ranges of the four sensors (bits of
+    /// [`interfaces::device::HolsterSensors`]), in; negative within range.
     #[must_use]
     pub fn beyond(&self, gripper: &Frame, ears: &[Frame; 2]) -> [f64; 4] {
         let Holsters { large_range, small_range, seat, .. } = self.description;

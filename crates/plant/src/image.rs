@@ -1,6 +1,4 @@
-//! Serde support for fields of the saved state whose types come from other crates and do not implement serde.
-//!
-//! Use with `#[serde(with = "crate::image::record")]` and `#[serde(with = "crate::image::frame")]`. Both preserve every
+//! Serde support for field types from other crates, with `#[serde(with = "crate::image::record")]`. It preserves every
 //! bit.
 
 /// Records and coded enums of the controller, as their byte image.
@@ -11,20 +9,12 @@ pub mod record {
     };
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-    /// Write the byte image.
-    ///
-    /// # Errors
-    /// Errors of the serializer.
     pub fn serialize<T: Plain, S: Serializer>(record: &T, serializer: S) -> Result<S::Ok, S::Error> {
         let mut image = vec![0_u8; T::SIZE];
         record.encode(&mut Writer::new(&mut image));
         image.serialize(serializer)
     }
 
-    /// Read the byte image.
-    ///
-    /// # Errors
-    /// Errors of the deserializer, or an error if the bytes are not the image of a legal value.
     pub fn deserialize<'de, T: Plain, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
         from_bytes(&Vec::<u8>::deserialize(deserializer)?).map_err(D::Error::custom)
     }
@@ -38,19 +28,11 @@ pub mod word {
     };
     use serde::{Deserialize, Deserializer, Serializer, de::Error};
 
-    /// Write the number of the variant.
-    ///
-    /// # Errors
-    /// Errors of the serializer.
     pub fn serialize<T: Plain, S: Serializer>(word: &T, serializer: S) -> Result<S::Ok, S::Error> {
         let [code] = to_bytes::<1, _>(word);
         serializer.serialize_u32(u32::from(code))
     }
 
-    /// Read the number of the variant.
-    ///
-    /// # Errors
-    /// Errors of the deserializer, or an error if no variant has the number.
     pub fn deserialize<'de, T: Plain, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
         let code = u8::try_from(u32::deserialize(deserializer)?).map_err(D::Error::custom)?;
         from_bytes(&[code]).map_err(D::Error::custom)
@@ -62,20 +44,12 @@ pub mod frame {
     use geometry::frame::{Frame, Rotation, Vector};
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    /// Write position and columns.
-    ///
-    /// # Errors
-    /// Errors of the serializer.
     pub fn serialize<S: Serializer>(frame: &Frame, serializer: S) -> Result<S::Ok, S::Error> {
         let axes: [[f64; 3]; 4] =
             [frame.position.into(), frame.x().into(), frame.y().into(), frame.z().into()];
         axes.serialize(serializer)
     }
 
-    /// Read position and columns.
-    ///
-    /// # Errors
-    /// Errors of the deserializer.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Frame, D::Error> {
         let [position, x, y, z] = <[[f64; 3]; 4]>::deserialize(deserializer)?.map(Vector::from);
         let rotation = Rotation::from_basis_unchecked(&[x, y, z]);

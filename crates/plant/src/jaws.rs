@@ -1,9 +1,7 @@
 //! Air supply of a gripper: the flow through its valves.
 //!
-//! The parts gripper and the hand of the pedestal have eight valves, whose flows add up (III.3.6); the v-gripper and
-//! the tool gripper have two, and open or close at one speed (VI.4, VI.5). Both drive the same cylinder
-//! ([`crate::gripper::Air`]): the flow moves free fingers and increases the force of blocked ones; trapped air keeps
-//! opening and force.
+//! The parts gripper and the pedestal's hand have eight valves, whose flows add up (III.3.6); the v-gripper and the
+//! tool gripper have two (VI.4, VI.5). All drive a cylinder ([`crate::gripper::Air`]).
 
 use interfaces::device::{JawValves, valve};
 
@@ -17,7 +15,6 @@ const FLOWS: [(u8, f64); 6] = [
     (valve::CLOSE_COARSE, -4.0),
 ];
 
-/// The flow through the valves of a gripper.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Supply {
     /// Speed of free fingers, in/s, opening positive.

@@ -1,7 +1,7 @@
 //! The joystick box (III.3.3) and the actions of its operator.
 //!
-//! Switches and knob keep their setting; stick and buttons return after their time. Each control has one
-//! position: an action replaces the previous one of the same control, and leaves the other controls unchanged.
+//! Switches and knob keep their setting; stick and buttons return after their time. An action replaces the previous one
+//! of the same control.
 
 use interfaces::{
     device::{JoystickBox, KNOB_FULL},
@@ -9,12 +9,9 @@ use interfaces::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Duration of a short press, ticks: long enough for every process to read it.
-const PRESS: u32 = 2;
-/// Ticks between two short presses of the same button.
-const PAUSE: u32 = 2;
+const PRESS: u32 = 2; // duration of a short press, ticks: long enough for every process to read it
+const PAUSE: u32 = 2; // ticks between two short presses of the same button
 
-/// A control that is held down, and the number of ticks left.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 enum Held {
     Stick([i16; 2]),
@@ -30,8 +27,7 @@ pub struct Joystick {
     frame: u8,
     hold: u8,
     held: Vec<(Held, u32)>,
-    /// Step buttons: bits, remaining presses, and ticks until the next press.
-    steps: Vec<(u8, u32, u32)>,
+    steps: Vec<(u8, u32, u32)>, // step buttons: bits, remaining presses, and ticks until the next press
 }
 
 impl Default for Joystick {
@@ -80,8 +76,8 @@ impl Joystick {
         self.frame != 0 || self.busy()
     }
 
-    /// Release stick and buttons, and switch the frame off. The knob and the switches that suspend processes
-    /// keep their setting, so that no motion accelerates.
+    /// Release stick and buttons, and switch the frame off; knob and switches keep their setting, so no motion
+    /// accelerates.
     pub fn release(&mut self) {
         self.frame = 0;
         self.held.clear();
@@ -115,12 +111,10 @@ impl Joystick {
 }
 
 impl Held {
-    /// True for stick and buttons, false for keys that cause no motion by themselves.
     const fn moves(self) -> bool {
         matches!(self, Self::Stick(_) | Self::Button(_))
     }
 
-    /// True if both are positions of one control.
     fn is_same_control(self, other: Self) -> bool {
         self == other || matches!((self, other), (Self::Stick(_), Self::Stick(_)))
     }
@@ -147,7 +141,7 @@ mod tests {
     use interfaces::device::{joystick_frame, single_step};
 
     #[test]
-    fn at_the_start_the_shownis_off_and_the_knob_full() {
+    fn starting_box_is_off_with_full_knob() {
         let shown = Joystick::default().read();
         assert_eq!(shown, JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() });
     }

@@ -1,6 +1,5 @@
-//! The arm as a kinematic chain: the frames of its links, and the joint torques of forces on them.
-//!
-//! Lengths are those of [`geometry::kinematics::T3`]. Inches, pounds and radians: a torque is in lb·in.
+//! The arm as a kinematic chain: frames of its links, and joint torques of forces on them. Lengths are those of
+//! [`geometry::kinematics::T3`]; inches, pounds and radians.
 
 use geometry::{
     frame::{Frame, Vector, rotation_by},
@@ -15,24 +14,17 @@ pub const AXES: [[f64; 3]; 6] =
 /// Origin of each link in its parent, along the parent's X, in.
 pub const STARTS: [f64; 6] = [0.0, 0.0, T3.upper_arm, T3.forearm, T3.pitch_to_yaw, 0.0];
 
-/// Index of the upper arm among the links.
 pub const UPPER_ARM: usize = 1;
-/// Index of the forearm among the links.
 pub const FOREARM: usize = 2;
 /// Index of the end plate among the links: it carries the quick change, the grippers and the parts in them.
 pub const END_PLATE: usize = 5;
 
-/// A force on a link of the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
-    /// Index of the link, 0 for the turret.
-    pub link: usize,
-    /// Point of application, world, in.
-    pub at: Vector,
-    /// The force, world, lb.
-    pub force: Vector,
-    /// An additional moment, world, lb·in.
-    pub moment: Vector,
+    pub link: usize,    // 0 for the turret
+    pub at: Vector,     // point of application, world, in
+    pub force: Vector,  // world, lb
+    pub moment: Vector, // world, lb·in
     /// Decrease of the force when the point moves with it, lb/in: 0 for a weight.
     pub stiffness: f64,
     /// Coefficient of friction perpendicular to the force: 0 for a weight.
@@ -40,7 +32,6 @@ pub struct Load {
 }
 
 impl Load {
-    /// A weight of `pounds` at a point.
     #[must_use]
     pub fn weight(link: usize, at: Vector, pounds: f64) -> Self {
         Self {
@@ -54,7 +45,6 @@ impl Load {
     }
 }
 
-/// The frames of the links for some joint angles.
 #[derive(Clone, Debug)]
 pub struct Chain {
     frames: [Frame; 6],
@@ -87,8 +77,7 @@ impl Chain {
         self.frames[link].shifted(Vector::new(inches, 0.0, 0.0)).position
     }
 
-    /// Row of the Jacobian: the speed of a point of a link along a direction per radian per second of each
-    /// joint, in/rad.
+    /// Row of the Jacobian: speed of a point of a link along a direction, for each joint, in/rad.
     #[must_use]
     pub fn lever(&self, link: usize, at: &Vector, along: &Vector) -> Vector6<f64> {
         let joints = self.frames.iter().zip(AXES).take(link + 1).enumerate();

@@ -3,7 +3,6 @@
 use interfaces::point::{Input, Output};
 use serde::{Deserialize, Deserializer, Serializer, de};
 
-/// A point that is saved by its name.
 pub trait Named: Sized + Copy {
     fn name(self) -> &'static str;
     fn named(name: &str) -> Option<Self>;

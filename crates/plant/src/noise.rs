@@ -9,7 +9,6 @@ pub enum Stream {
     Gripper = 1,
     Camera = 2,
     Placement = 3,
-    /// The force sensor of the tool gripper.
     Force = 5,
     Pedestal = 4,
     Resolvers = 6,
@@ -21,7 +20,6 @@ pub enum Stream {
 pub struct Noise(ChaCha8Rng);
 
 impl Noise {
-    /// The stream of a device in a run with a seed.
     #[must_use]
     pub fn new(seed: u64, stream: Stream) -> Self {
         Self::numbered(seed, stream as u64)
@@ -37,7 +35,6 @@ impl Noise {
 
     /// The next number, uniform in -greatest..greatest.
     pub fn within(&mut self, greatest: f64) -> f64 {
-        // 53 random bits make the fraction of an f64 in 0..1.
         let fraction = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         greatest * (2.0 * fraction - 1.0)
     }

@@ -14,26 +14,22 @@ use crate::{
     solid::Solid,
 };
 
-/// Coefficient of friction of a part's surface.
-const FRICTION: Real = 0.30;
+const FRICTION: Real = 0.30; // coefficient of friction of a part's surface
 /// Angular damping of a part that can roll, 1/s: floor and trays are slightly soft and uneven.
 const ROLLING: Real = 2.0;
 
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Part {
     pub kind: PartType,
-    /// Its number in this cell, from 1, which machining does not change.
-    pub id: u32,
+    pub id: u32, // from 1; machining keeps it
     pub body: RigidBodyHandle,
     pub collider: ColliderHandle,
-    /// True if it lay on the floor at the last check.
-    pub fallen: bool,
+    pub fallen: bool, // lay on the floor at the last check
     /// Sides that were machined in the vise, as unit vectors along the part's axes.
     pub machined: Vec<[i8; 3]>,
 }
 
 impl Part {
-    /// Put a part into the world.
     pub fn new(world: &mut PhysicsWorld, id: u32, kind: &PartType, frame: &Frame) -> Self {
         let rolls = Solid::of(kind).cylinder().is_some();
         let damping = if rolls { ROLLING } else { 0.0 };
@@ -69,7 +65,6 @@ impl Part {
         *world.bodies[self.body].position()
     }
 
-    /// Its frame, inches.
     #[must_use]
     pub fn frame(&self, world: &PhysicsWorld) -> Frame {
         to_frame(&self.pose(world))
@@ -81,7 +76,6 @@ impl Part {
         Load { mass, inertia: mass * self.solid().inertia() }
     }
 
-    /// Set the collision groups of its holders, with which it does not collide.
     pub fn set_holders(&self, world: &mut PhysicsWorld, holders: Group) {
         if let Some(collider) = world.colliders.get_mut(self.collider) {
             collider.set_collision_groups(groups(PART, Group::ALL & !holders));
@@ -106,17 +100,14 @@ fn collider(kind: &PartType) -> ColliderBuilder {
     Solid::of(kind).collider().mass(mass(kind)).friction(FRICTION).collision_groups(groups(PART, Group::ALL))
 }
 
-/// Report of a part. The names of the fields are those of the JSON object.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartState {
-    /// Its number in this cell, from 1.
     #[serde(skip)]
-    pub id: u32,
+    pub id: u32, // from 1
     pub name: String,
     /// A location: a unit, that of the vise, the drum or the pedestal, `gripper`, `floor` or `elsewhere`.
     pub location: String,
-    /// The nearest sector of the unit; 0 elsewhere.
-    pub sector: u16,
+    pub sector: u16, // 0 if not in a unit
     pub held: bool,
     pub clamped: bool,
     /// Its middle in world coordinates, in.
@@ -171,7 +162,6 @@ pub fn segment_meets_box(from: Vector, to: Vector, pose: &Pose, half: Vector) ->
     enters <= leaves
 }
 
-/// Sizes of a part along the axes of the frame in which `here` is given, in.
 #[must_use]
 pub fn sizes_along(here: &Frame, kind: &PartType) -> Inches {
     let square = nearest_square(here);

@@ -3,13 +3,11 @@
 //!
 //! Three angles, all in degrees and positive to the left seen from above (ASSUMED):
 //!
-//! * the *counter* of the motor's controller: steps from the position where it was last set to a value. It is the only
-//!   angle that the controller of the pedestal has; it is not valid until the motor has moved to the + limit and the
-//!   counter was set there;
-//! * the *motor angle*: the value of the counter after a calibration by IV.1 step 3. The switches are at fixed motor
-//!   angles. The motor stops at once at a switch and can move away from it;
+//! * the *counter* of the motor's controller: steps since it was last set, the only angle that the pedestal's
+//! controller has. It is not valid before it was set at the + limit;
+//! * the *motor angle*: the counter after a calibration by IV.1 step 3. The motor stops at once at a switch;
 //! * the *table angle*: the angle of the hand. In VII.7.4 a motor angle of 183.5 flips a part by 180, so the gear ratio
-//!   is not exactly one (ASSUMED); the two are equal where the fingers move across the radial line from the robot.
+//! is not exactly one (ASSUMED); the two are equal where the fingers move across the radial line.
 
 mod panel;
 
@@ -28,18 +26,14 @@ use crate::{
     sensor::Analog,
 };
 
-/// Motor steps per degree.
-const STEPS_PER_DEGREE: f64 = TABLE_STEPS_PER_TENTH as f64 * 10.0;
-/// Distance within which the motor has reached its goal, steps.
-const ON_STEP: f64 = 1e-6;
+const STEPS_PER_DEGREE: f64 = TABLE_STEPS_PER_TENTH as f64 * 10.0; // motor steps per degree
+const ON_STEP: f64 = 1e-6; // distance within which the motor has reached its goal, steps
 
-/// The rotary table: motor, controller, switches, potentiometer.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Table {
     description: RotaryTable,
     position: f64,
-    /// Position at which it stops, steps.
-    goal: f64,
+    goal: f64, // position at which it stops, steps
     speed: f64,
     offset: f64,
     echo: u32,
@@ -78,7 +72,6 @@ impl Table {
         }
     }
 
-    /// Set the goal to the nearest point where the ramp can stop the motor.
     fn ramp_down(&mut self) {
         self.goal = libm::round(self.position + self.stopping_way());
     }
@@ -129,13 +122,11 @@ impl Table {
         self.position != self.goal
     }
 
-    /// Motor angle, degrees.
     #[must_use]
     pub fn motor_angle(&self) -> f64 {
         self.position / STEPS_PER_DEGREE
     }
 
-    /// Table angle, degrees.
     #[must_use]
     pub fn angle(&self) -> f64 {
         self.description.angle(self.motor_angle())
@@ -145,7 +136,6 @@ impl Table {
         libm::round(self.position + self.offset) as i32
     }
 
-    /// Readings of the table and of its hand.
     pub fn sensors(&self, hand: GripSensors, noise: &mut Noise) -> PedestalSensors {
         PedestalSensors {
             potentiometer: hand.potentiometer,
@@ -189,7 +179,6 @@ impl Pedestal {
         let table = Table::new(&description.table);
         let tool = to_pose(&hand_frame(description, table.angle()));
         let hand = Gripper::new(world, &description.hand, description.stiffness, &tool, HAND);
-        // Most jobs do not use it, and in the others it is mostly at rest.
         hand.let_fingers_sleep(world);
         Self { hand, table, description: description.clone() }
     }
@@ -316,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_is_a_ramp() {
+    fn stopped_table_ramps_down() {
         let mut table = table();
         order(&mut table, MotorOrder::Turn, -10_000);
         (0..400).for_each(|_| table.advance(0.0025));
@@ -328,7 +317,6 @@ mod tests {
         assert!(speed < 0.0 && (way - least).abs() < 0.1, "{way} degrees, {least} expected");
     }
 
-    /// A world with the steps and stiffness of the cell, and its pedestal.
     fn standing() -> (PhysicsWorld, Pedestal) {
         let cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
         let mut world = crate::cell::physics(&cell);

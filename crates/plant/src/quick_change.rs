@@ -1,12 +1,8 @@
-//! The quick change: the A plate on the wrist with its locking ring, and its position relative to the B plate of a
-//! gripper.
+//! The quick change: the A plate on the wrist with its locking ring, and its position relative to a B plate.
 //!
-//! Air turns the ring between its two ends while the control port is enabled; two reflectance sensors detect
-//! only the ends (VI.2). The ring catches a B plate only if it locks while the plates lie together, and
-//! releases it at its unlocked end. The id pins are longer than the play of the plates: they read the gripper
-//! under the A plate, locked or not, even after it has dropped onto its holster (V.2.1 QC-DETACH).
-//!
-//! [`crate::cell`] determines the body that carries a gripper, and when the gripper falls.
+//! Air turns the ring while the control port is enabled; two reflectance sensors detect its ends (VI.2). The ring
+//! catches a B plate only if it locks while the plates lie together. The id pins are longer than the play of the
+//! plates: they also read a gripper that is not locked (V.2.1 QC-DETACH).
 
 use geometry::frame::{Frame, rotation_vector};
 use interfaces::device::QuickChangeValves;
@@ -14,8 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::description::QuickChange as Description;
 
-/// Fraction of the ring's travel at an end within which its sensor detects it.
-const SEEN: f64 = 0.02;
+const SEEN: f64 = 0.02; // fraction of the ring's travel at an end within which its sensor detects it
 /// Depth to which plates can be pressed together with touching pins, in; more is a collision.
 const PRESSED: f64 = 0.30;
 /// Greatest angle between the plates at which the pins meet their pads, radians (3 degrees).
@@ -23,13 +18,11 @@ const PINS_ANGLE: f64 = 0.052_36;
 
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Ring {
-    /// Position: 0 unlocked, 1 locked.
-    place: f64,
+    place: f64, // Position: 0 unlocked, 1 locked
     travel_time: f64,
 }
 
 impl Ring {
-    /// A ring at one of its ends.
     #[must_use]
     pub fn new(description: &Description, locked: bool) -> Self {
         Self { place: f64::from(u8::from(locked)), travel_time: description.travel_time_s }
@@ -46,35 +39,29 @@ impl Ring {
         self.place = (self.place + towards).clamp(0.0, 1.0);
     }
 
-    /// Distance of the ring beyond the ranges of the sensors of the locked and the unlocked position, as a fraction of
-    /// its travel; negative within range.
+    /// Distance of the ring beyond the ranges of its two sensors, as a fraction of its travel; negative within range.
     #[must_use]
     pub fn beyond(&self) -> [f64; 2] {
         [1.0 - SEEN - self.place, self.place - SEEN]
     }
 
-    /// True if it is in its locked position.
     #[must_use]
     pub fn locked(&self) -> bool {
         self.place >= 1.0 - SEEN
     }
 
-    /// True if it is in its unlocked position.
     #[must_use]
     pub fn unlocked(&self) -> bool {
         self.place <= SEEN
     }
 }
 
-/// Position of the A plate relative to a B plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
     /// Distance of the plates, in; negative if they are pressed together.
     pub apart: f64,
-    /// Offset in the plane of the plates, in.
-    pub aside: f64,
-    /// Angle between them, radians.
-    pub angle: f64,
+    pub aside: f64, // offset in the plane of the plates, in
+    pub angle: f64, // angle between them, radians
 }
 
 impl Gap {

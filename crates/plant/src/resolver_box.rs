@@ -1,8 +1,5 @@
-//! The resolver electronics (III.3.2) and its reset (IV.3.3 step 11, a to q): a button for each joint sets the reading
-//! of the joint to that of HOME, while the MANUAL/AUTO switch is at MANUAL.
-//!
-//! The address switches and the button of a joint are one action here. The electronics cannot detect whether
-//! the robot is at HOME: elsewhere the reset makes the readings wrong (CHOSEN).
+//! The resolver electronics (III.3.2). A button per joint sets its reading to that of HOME while the switch is at
+//! MANUAL (IV.3.3 step 11). The electronics cannot detect HOME: elsewhere the reset makes the readings wrong (CHOSEN).
 
 use geometry::kinematics::HOME_JOINTS;
 use interfaces::{
@@ -16,7 +13,6 @@ use crate::{
     sensor::resolver,
 };
 
-/// Reasons why the electronics does not react.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ResolverRefusal {
     #[error("the resolver electronics is at AUTO: `resolvers manual` comes first")]
@@ -25,13 +21,11 @@ pub enum ResolverRefusal {
     NoJoint(u8),
 }
 
-/// The electronics: its switch, and the offset that it adds to each resolver.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct ResolverBox {
     manual: bool,
     zero: [u32; 6],
-    /// The last readings, with `zero`.
-    shown: [u32; 6],
+    shown: [u32; 6], // the last readings, with `zero`
 }
 
 impl ResolverBox {
@@ -43,10 +37,7 @@ impl ResolverBox {
         self.shown = resolvers.counts;
     }
 
-    /// Turn the switch or press a button.
-    ///
-    /// # Errors
-    /// [`ResolverRefusal`]. The state is then unchanged.
+    /// Turn the switch or press a button. On error, the state is unchanged.
     pub fn press(&mut self, key: ResolverKey) -> Result<(), ResolverRefusal> {
         match key {
             ResolverKey::Manual(on) => self.manual = on,
@@ -100,7 +91,6 @@ mod tests {
                 electronics.press(ResolverKey::Joint(joint)).unwrap();
             }
             assert_eq!(shown(&mut electronics, offset), home);
-            // A repetition has no effect.
             electronics.press(ResolverKey::Joint(2)).unwrap();
             assert_eq!(shown(&mut electronics, offset), home);
             assert_eq!(electronics.press(ResolverKey::Joint(6)), Err(ResolverRefusal::NoJoint(6)));

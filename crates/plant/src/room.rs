@@ -1,8 +1,5 @@
-//! The cell for the path check: the positions of all bodies and of the carried part, without physics and time.
-//!
-//! A [`Layout`] has the positions of all objects that a job moves. [`Room::look`] sets the robot to joint
-//! angles and returns its contacts and near bodies, with the same bodies ([`crate::bodies`]) and the same
-//! clearance check as a run.
+//! The cell for the path check: positions of all bodies, without physics and time. [`Room::look`] sets the robot to
+//! joint angles and returns its contacts, with the bodies and the clearance check of a run.
 
 use geometry::{
     frame::{Frame, Vector as Inches},
@@ -21,7 +18,6 @@ use crate::{
     vise::Jaws,
 };
 
-/// Names of the grippers by end effector id from 1.
 const GRIPPERS: [&str; 3] = ["parts_gripper", "v_gripper", "tool_gripper"];
 /// Greatest distance of the centre of a part in a nest from that of the seat, in.
 const IN_NEST: f64 = 1.0;
@@ -39,27 +35,21 @@ pub struct Placed {
 /// Positions of all objects that a job moves. Openings in inches, the table angle in degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    /// End effector id of the gripper on the robot, if any.
-    pub gripper: Option<u8>,
+    pub gripper: Option<u8>, // end effector id
     /// End effector id of a gripper in its holster with which the robot is engaged, if any. It is then not an obstacle.
     pub engaged: Option<u8>,
     pub opening: f64,
     pub held: Option<Placed>,
     pub parts: Vec<Placed>,
-    /// Index of the selected program of the vise, from 0.
-    pub program: usize,
-    /// Distance of the inner faces of the vise's jaws.
-    pub jaws: f64,
+    pub program: usize, // from 0
+    pub jaws: f64,      // between their inner faces
     pub table: f64,
     pub hand: f64,
 }
 
-/// The part in the closed jaws of the vise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clamped {
-    /// A part of the layout, by its index.
-    Part(usize),
-    /// The part that the robot holds.
+    Part(usize), // by its index
     Held,
 }
 
@@ -71,7 +61,6 @@ pub struct Room {
 }
 
 impl Room {
-    /// The cell of a validated description.
     #[must_use]
     pub fn new(cell: &CellDescription) -> Self {
         Self {
@@ -86,7 +75,6 @@ impl Room {
         &self.cell
     }
 
-    /// The layout at the start of a run.
     #[must_use]
     pub fn at_start(&self) -> Layout {
         let gripper = match self.cell.quick_change.mounted {
@@ -109,13 +97,11 @@ impl Room {
         }
     }
 
-    /// The gripper on the robot, if any.
     #[must_use]
     pub fn worn(&self, layout: &Layout) -> Option<&Gripper> {
         self.gripper(layout.gripper?)
     }
 
-    /// The gripper with an end effector id.
     #[must_use]
     pub fn gripper(&self, id: u8) -> Option<&Gripper> {
         let grippers = &self.cell.gripper;
@@ -128,8 +114,7 @@ impl Room {
         self.cell.vise.program.get(program).map_or(0.0, |program| jaws.gap(program))
     }
 
-    /// The seat in the vise, in a program, of a part that is near it: its frame, and the distance of the inner faces of
-    /// the jaws when closed on it, in.
+    /// The seat in the vise of a part near it: its frame, and the distance of the jaws when closed on it, in.
     #[must_use]
     pub fn vise_seat(&self, program: usize, part: &Placed) -> Option<(Frame, f64)> {
         let program = self.cell.vise.program.get(program)?;
@@ -153,8 +138,8 @@ impl Room {
         })
     }
 
-    /// Close the jaws of the vise on the part between them. A part held by nothing else moves to its seat, to
-    /// which the robot has pushed it. `tool` is the tool frame of the robot. Returns the part in the jaws.
+    /// Close the jaws on the part between them. A part held by nothing else moves to its seat. Returns the part in the
+    /// jaws.
     pub fn clamp(&self, layout: &mut Layout, tool: &Frame) -> Option<Clamped> {
         layout.jaws = self.jaws(layout.program, Jaws::Open);
         let index = self.in_vise(layout);
@@ -179,7 +164,6 @@ impl Room {
         nests.into_iter().find(|seat| (seat.position - part.frame.position).norm() < IN_NEST)
     }
 
-    /// The body that a part would overlap, if any.
     #[must_use]
     pub fn in_the_way(&self, part: &Placed, layout: &Layout) -> Option<String> {
         let part = bodies::part(&part.kind, &to_pose(&part.frame));
@@ -188,8 +172,8 @@ impl Room {
         Some(other.name.to_string())
     }
 
-    /// Final frame of a part lowered from `above` along the unit vector `down`, among the fixed bodies. `None`
-    /// if it touches a body at the start, or none within `deepest` inches.
+    /// Final frame of a part lowered from `above` along `down`. `None` if it touches a body at the start, or none
+    /// within `deepest` in.
     #[must_use]
     pub fn let_down(&self, kind: &PartType, above: &Frame, down: &Inches, deepest: f64) -> Option<Frame> {
         let at = |deep: f64| Frame { position: above.position + down * deep, ..*above };
@@ -207,15 +191,13 @@ impl Room {
         Some(at(free))
     }
 
-    /// Frame of a part in the pedestal's hand after the table has turned from the angle of the layout to another,
-    /// degrees.
+    /// Frame of a part in the pedestal's hand after the table has turned to an angle, degrees.
     #[must_use]
     pub fn turned(&self, layout: &Layout, to: f64, frame: &Frame) -> Frame {
         let [before, after] = [layout.table, to].map(|angle| hand_frame(&self.cell.pedestal, angle));
         after.compose(&before.inverse().compose(frame))
     }
 
-    /// Obstacles of the robot except the robot itself and the fixed bodies.
     #[must_use]
     pub fn devices(&self, layout: &Layout) -> Vec<Body> {
         let jaw = vise_frame(&self.cell.vise).shifted(Inches::new(0.0, layout.jaws, 0.0));
@@ -246,8 +228,7 @@ impl Room {
         movers
     }
 
-    /// Contacts of the robot, and bodies nearer than `margin` inches, as in [`crate::Cell::contacts`]. `movers` are the
-    /// robot's bodies and `devices` those of a layout.
+    /// Contacts of the robot, and bodies nearer than `margin` inches, as in [`crate::Cell::contacts`].
     #[must_use]
     pub fn look(&self, movers: &[Body], devices: &[Body], margin: f64) -> Vec<Contact> {
         let arm = movers.iter().filter(|body| body.kind.is_obstacle());

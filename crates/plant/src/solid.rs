@@ -14,12 +14,10 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solid {
     half: Vector,
-    /// Axis of a cylinder; `None` for a box.
-    axis: Option<usize>,
+    axis: Option<usize>, // axis of a cylinder; `None` for a box
 }
 
 impl Solid {
-    /// The shape of a kind of part.
     #[must_use]
     pub fn of(kind: &PartType) -> Self {
         let axis = match kind.shape {
@@ -30,7 +28,6 @@ impl Solid {
         Self { half: Vector::from_array(kind.size.map(|size| metres(size / 2.0))), axis }
     }
 
-    /// A box of the given half sizes.
     #[must_use]
     pub const fn cuboid(half: Vector) -> Self {
         Self { half, axis: None }
@@ -98,7 +95,6 @@ pub fn along(kind: &PartType) -> Option<(Frame, f64, f64)> {
     Some((Frame { position: Inches::zeros(), rotation: turn }, diameter / 2.0, length))
 }
 
-/// The family of a part, which determines its colour in pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
     Tool,
@@ -109,7 +105,6 @@ pub enum Family {
 }
 
 impl Family {
-    /// The family of a kind of part.
     #[must_use]
     pub fn of(kind: &PartType) -> Self {
         match kind.shape {

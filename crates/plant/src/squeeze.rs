@@ -1,12 +1,11 @@
 //! Geometry of a part between two parallel closing faces: fingers or vise jaws.
 //!
-//! Both grips have the same geometry: two rectangular pads face each other along Y. The most nearly parallel
-//! face of a box turns towards the pads. Clipped to the pad, it gives the width at which the pads stop, the
-//! point and area where friction acts, and the pose in which the box lies flush.
+//! Two rectangular pads face each other along Y. The most nearly parallel face of a box turns towards the pads. Clipped
+//! to the pad, it gives the width at which the pads stop, the area where friction acts, and the pose in which the box
+//! lies flush.
 //!
-//! A cylinder that lies between the pads touches each along a line, which is treated as a narrow strip. Pads
-//! with V-grooves (the v-gripper) touch it along two lines, and align its axis with that of the grooves. A
-//! cylinder that stands between the pads is treated as its bounding box.
+//! A cylinder along the pads touches each along a line, treated as a narrow strip; V-grooves (the v-gripper) touch it
+//! along two lines and align it. A cylinder that stands between the pads is treated as its bounding box.
 
 use rapier3d_f64::math::{Pose, Real, Rotation, Vector};
 
@@ -21,8 +20,7 @@ const STRIP: Real = 0.1;
 const GROOVE_STRIP: Real = 0.7;
 /// Greatest distance between the axes of a cylinder and of a groove that catches it, in radii.
 const CAUGHT: Real = 0.5;
-/// Least contact area that stops a pad, m² (0.01 square inch).
-const LEAST_AREA: Real = 6.45e-6;
+const LEAST_AREA: Real = 6.45e-6; // least contact area that stops a pad, m² (0.01 square inch)
 
 /// The rectangle that each of two pads covers, in the axes of the grip, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,14 +34,11 @@ pub struct Pads {
 /// A part between two pads, in the axes of the grip, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Squeeze {
-    /// Distance of the pads when both touch.
-    pub width: Real,
-    /// Position of the part's centre along Y.
-    pub centre: Real,
+    pub width: Real,  // when both touch
+    pub centre: Real, // of the part, along Y
     pub point: Vector,
     pub area: Real,
-    /// Extent of the touched area along X and Z.
-    pub span: [Real; 2],
+    pub span: [Real; 2], // along X and Z
     /// Pose of the part turned so that its face lies on the pads, and moved into the grooves.
     pub flush: Pose,
 }

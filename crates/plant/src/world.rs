@@ -5,8 +5,7 @@ use std::ops::{Deref, DerefMut};
 use rapier3d_f64::prelude::{CCDSolver, CollisionPipeline, PhysicsPipeline, PhysicsWorld};
 use serde::{Deserialize, Serialize};
 
-/// All bodies, colliders, joints and contacts. A copy, or a saved and restored one, continues bit for bit like
-/// the original: the pipelines and the solver of continuous collisions are only workspace.
+/// All bodies, colliders, joints and contacts. A copy, or a restored one, continues bit for bit like the original.
 #[derive(Deserialize, Serialize)]
 #[serde(transparent)]
 pub struct World(PhysicsWorld);

@@ -1,7 +1,5 @@
-//! Contact, friction and grip against closed forms, which justify the contact parameters of the cell description.
-//!
-//! Each test gives the formula with which it compares the simulation. Steps of 2.5 ms integrate a constant acceleration
-//! with an error of half a step of velocity; tolerances are a few times that.
+//! Contact, friction and grip against closed forms, which justify the contact parameters. Steps of 2.5 ms err by half a
+//! step of velocity; tolerances are a few times that.
 
 use crate::rig::{self, CELL, PFIX, Rig, UNIT_V1, description, table};
 use geometry::{
@@ -12,10 +10,8 @@ use plant::{CellDescription, CellEvent, WorkstationAction};
 use rcs_core::tick::TICK_S;
 
 const GRAVITY: f64 = 9.806_65 / 0.0254;
-/// Coefficient of friction of parts on fixed bodies, as in `Part` and `scene`.
-const FRICTION: f64 = 0.30;
-/// Middle of the slope, in: away from all other bodies.
-const SLOPE: [f64; 3] = [0.0, 90.0, -20.0];
+const FRICTION: f64 = 0.30; // coefficient of friction of parts on fixed bodies, as in `Part` and `scene`
+const SLOPE: [f64; 3] = [0.0, 90.0, -20.0]; // middle of the slope, in: away from all other bodies
 
 /// The cell with blocks of 2 x 2 x 2 in of a given weight, and a slope of 120 x 20 x 4 in that falls towards +X.
 fn with_slope(degrees: f64, weight: f64) -> CellDescription {
@@ -31,12 +27,10 @@ fn put(rig: &mut Rig, frame: Frame) {
     rig.cell.workstation(&WorkstationAction::Put { part: "BLOCK".into(), frame }).unwrap();
 }
 
-/// Axes of the slope: X down the slope, Z normal to it.
 fn slope_axes(degrees: f64) -> Rotation {
     rotation_by(&Vector::new(0.0, degrees.to_radians(), 0.0))
 }
 
-/// A block that lies on the slope 40 in above its middle.
 fn on_slope(degrees: f64, weight: f64) -> Rig {
     let mut rig = Rig::new(&with_slope(degrees, weight), 1);
     let rotation = slope_axes(degrees);
@@ -137,9 +131,8 @@ fn grip_block(weight: f64, force: f64) -> (Rig, Frame) {
     (rig, grip)
 }
 
-/// Between pads with the force F each and friction mu a part hangs while it weighs less than 2 F mu, and slips out
-/// beyond: the load is its weight; the rounded words of the lifting motion add up to 2 % in jolts. The air adds force
-/// tick by tick, so F is the final force of the fingers, and the tested weights are on both sides of the limit.
+/// A part between pads with force F and friction mu hangs while it weighs less than 2 F mu. The rounded words of the
+/// lift add 2 % in jolts; F is the final force of the fingers.
 #[test]
 fn gripped_part_slips_at_twice_force_times_friction() {
     let friction = description().gripper.parts.friction;
@@ -163,8 +156,8 @@ fn gripped_part_slips_at_twice_force_times_friction() {
     }
 }
 
-/// A bar on its edge falls to the side of its middle: on the ledge the middle is behind the edge by 0.0375 in at a
-/// height of 2.00 in, so the bar stands up to atan(0.0375 / 2) = 1.074 degrees (cell proposal, §2).
+/// A bar on its edge falls to the side of its middle: it stands up to atan(0.0375 / 2) = 1.074 degrees (cell proposal,
+/// §2).
 #[test]
 fn bar_on_the_ledge_tips_when_its_middle_passes_the_edge() {
     let critical = libm::atan2(0.0375, 2.0).to_degrees();
@@ -184,8 +177,7 @@ fn bar_on_the_ledge_tips_when_its_middle_passes_the_edge() {
     }
 }
 
-/// The arm's stiffness takes up the over-travel of the seat move: at rest the bar is pressed against the back of the
-/// notch with F = k x, and does not move; k = 2000 lb/in, x = 0.015 in give 30 lb.
+/// At rest the bar is pressed against the notch with F = k x: 2000 lb/in and 0.015 in give 30 lb.
 #[test]
 fn pressed_bar_force_is_stiffness_times_over_travel() {
     let mut rig = Rig::new(&description(), 1);

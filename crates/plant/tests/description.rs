@@ -18,7 +18,6 @@ fn faults(edits: &[(&str, &str)]) -> (String, Vec<Diagnostic>) {
     }
 }
 
-/// The only error: the underlined text, its message, and the nearest name.
 fn only(from: &str, to: &str) -> (String, String, Option<String>) {
     let (text, faults) = faults(&[(from, to)]);
     let [fault] = &faults[..] else { panic!("{faults:#?}") };

@@ -3,8 +3,7 @@
 use crate::rig::{Rig, description, scenes, tape::Tape};
 use plant::{Cell, RestoreError};
 
-/// Ticks for which a restored cell is compared with the saved one.
-const GOES_ON: usize = 500;
+const GOES_ON: usize = 500; // ticks for which a restored cell is compared with the saved one
 
 fn tape(rig: Rig) -> Tape {
     rig.tape.unwrap()

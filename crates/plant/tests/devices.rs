@@ -129,7 +129,6 @@ fn gripper_sensors_measure_opening_force_and_part() {
     assert_eq!(held.beams, 0b0000_0011, "the bar covers one side of the fingers, 0.42 in deep");
 }
 
-/// Move over sector 4 of UNIT_1 with GR-PIC and send a request.
 fn look(
     rig: &mut Rig,
     number: u32,
@@ -182,7 +181,6 @@ fn empty_sector_shows_no_part() {
     assert_eq!(look(&mut rig, 1, Picture::FastFlood, 17, [0.0, 0.0], 0.0).status, VisionStatus::NothingSeen);
 }
 
-/// The bytes of all inputs of a run that places at random, picks and takes pictures.
 fn run(seed: u64) -> Vec<u8> {
     let mut rig = Rig::new(&description(), seed);
     let action = WorkstationAction::Place {

@@ -8,20 +8,17 @@ use geometry::{
 use interfaces::device::{FORCE_COUNTS_PER_LB, ForceSensor, JawValves, MOMENT_COUNTS_PER_IN_LB};
 use plant::{CellEvent, WorkstationAction, WorkstationError};
 
-/// Poses of the cell proposal, §4.
 const TOOL_V1: Pose =
     Pose { wrist: [2757, -2683, 2321], tool: [5597, -3497, 1800], finger: [5987, -1052, 105] };
 const TOOL_SAFE: Pose =
     Pose { wrist: [5298, -2322, 1559], tool: [8296, -2431, 1585], finger: [8357, -1417, -1238] };
 
-/// The cell with the tool gripper on the robot, and a tool.
 fn description() -> plant::CellDescription {
     let text = rig::CELL.replace("mounted = \"parts\"", "mounted = \"tool\"")
         + "\n[[part]]\nname = \"MILL\"\nsize = [3.30, 1.75, 1.75]\nweight = 6.0\ntool = true\n";
     plant::CellDescription::from_toml(&text).unwrap()
 }
 
-/// A position in the frame of TOOL-TRNS, in.
 fn at(x: f64, z: f64) -> Frame {
     description().drum.pose.frame().unwrap().shifted(Vector::new(x, 0.0, z))
 }
@@ -37,7 +34,6 @@ fn since(zero: &ForceSensor, now: &ForceSensor) -> [f64; 4] {
     ]
 }
 
-/// A rig in front of the drum.
 fn before_drum() -> Rig {
     let mut rig = Rig::new(&description(), 3);
     for via in [FIX_V1, TOOL_V1, TOOL_SAFE] {
@@ -53,8 +49,7 @@ fn jaws(rig: &mut Rig, open: bool) {
     rig.ticks(5);
 }
 
-/// Move in a straight line from `from` towards `to` until the forces relative to the start satisfy the
-/// condition. Returns the distance along X or Z, and the forces.
+/// Move straight towards `to` until the forces relative to the start satisfy the condition.
 fn until(
     rig: &mut Rig,
     from: (f64, f64),
@@ -98,7 +93,6 @@ fn acquire(rig: &mut Rig) {
     assert!(rig.part().held);
 }
 
-/// A rig with a tool from the drum in the gripper, clear of the drum.
 fn removed() -> Rig {
     let mut rig = before_drum();
     rig.cell.workstation(&WorkstationAction::DrumTool { part: "MILL".into() }).unwrap();

@@ -143,7 +143,6 @@ fn restored_cell_keeps_its_faults() {
     assert_eq!(cell.faults(), restored.faults());
 }
 
-/// All inputs of the controller in a run with faults.
 fn shown(seed: u64) -> String {
     let text = "seed = 5\n\
         [[fault]]\nkind = \"noisy\"\nsensor = \"grip.potentiometer\"\nby = 20\n\

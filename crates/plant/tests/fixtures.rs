@@ -101,7 +101,6 @@ fn bar_stops_the_jaw_in_every_program() {
     program(&mut rig, "CLEVIS").unwrap();
     rig.vise(WorkstationAction::ViseClose);
     assert!(rig.part().clamped, "{:?}", rig.part());
-    // Measured between the faces for the clevis, which are 0.125 in nearer to each other.
     assert!((rig.cell.vise_opening() - 0.50).abs() < 1e-3, "{}", rig.cell.vise_opening());
 }
 

@@ -5,7 +5,6 @@ use geometry::frame::{Vector, rotation_vector};
 use interfaces::device::valve;
 use plant::{CellEvent, Placement, WorkstationAction};
 
-/// Position of the part relative to the fingertips, in.
 fn in_fingers(rig: &Rig) -> Vector {
     rig.cell.tool().inverse().compose(&rig.part_frame()).position
 }
@@ -35,7 +34,6 @@ fn held_part_does_not_creep() {
     assert!(rig.log.is_empty(), "{:?}", rig.log);
 }
 
-/// The cell with a block of the given weight, 2 x 2 x 2 in.
 fn with_block(weight: f64) -> plant::CellDescription {
     let text = format!(
         "{}\n[[part]]\nname = \"BLOCK\"\nsize = [2.0, 2.0, 2.0]\nweight = {weight}\nvision_id = 99\n",
@@ -103,7 +101,7 @@ fn bar_gripped_softly_at_its_end_droops() {
 }
 
 #[test]
-fn vented_fingers_let_go() {
+fn vented_fingers_release_their_part() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
     rig.pick(0.0, 0.0, 0.0, 30.0);

@@ -9,11 +9,9 @@ use geometry::{
 use interfaces::device::DeviceOutputs;
 use plant::{Cell, CellDescription, CellEvent, Cut, Droop, EStop, Key, WorkstationAction, t3::Stage};
 
-/// Ticks within which an arm comes to rest on any obstacle.
-const LONGEST: u32 = 3000;
+const LONGEST: u32 = 3000; // ticks within which an arm comes to rest on any obstacle
 
-/// SAFE of the cell proposal, degrees.
-const SAFE: [f64; 6] = [-132.0, 45.0, -89.9, -0.1, 0.0, 0.0];
+const SAFE: [f64; 6] = [-132.0, 45.0, -89.9, -0.1, 0.0, 0.0]; // SAFE of the cell proposal, degrees
 
 fn starting_at(start: [f64; 6]) -> CellDescription {
     let mut description = description();
@@ -21,7 +19,6 @@ fn starting_at(start: [f64; 6]) -> CellDescription {
     description
 }
 
-/// Let the arm sag until it is at rest.
 fn settle(rig: &mut Rig) -> Droop {
     for _ in 0..LONGEST {
         rig.tick();
@@ -116,7 +113,6 @@ fn sagging_arm_over_a_tray_hits_its_contents() {
     assert!(droop.touched.iter().any(|contact| contact.obstacle.starts_with("UNIT_1_")), "{droop:?}");
     let reported = contacts(&rig);
     assert!(!reported.is_empty(), "{:?}", rig.log);
-    // It is at rest.
     let before = hand(&rig);
     rig.ticks(25);
     assert!((hand(&rig) - before).norm() < 0.3, "{}", hand(&rig) - before);
@@ -190,7 +186,7 @@ fn hydraulics_failure_is_a_fault_until_repair() {
 }
 
 #[test]
-fn the_same_droop_twice() {
+fn sagging_is_repeatable() {
     let run = || {
         let mut rig = Rig::new(&description(), 3);
         rig.go(UNIT_V1.to_frame().unwrap(), 10.0);

@@ -4,7 +4,6 @@ use crate::{rig::description, vise::upright};
 use geometry::frame::Vector;
 use plant::{Cell, Ideal, Key, Placement, TableKey, WorkstationAction as Action, room::Room};
 
-/// Execute the actions in both cells, one after the other.
 fn both(actions: &[Action]) -> Vec<Result<(), String>> {
     let description = &description();
     let mut cell = Cell::new(description, 1).expect("the cell is sound");

@@ -12,7 +12,7 @@ fn machine() -> WorkstationAction {
 }
 
 #[test]
-fn the_linkbar_is_made() {
+fn linkbar_actions_make_the_part() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 1.2, -1.7, 40.0);
     rig.vise(VisePartial);

@@ -25,7 +25,6 @@ fn description() -> CellDescription {
     CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap()
 }
 
-/// A cell with a blank and a clevis in the tray.
 fn cell(description: &CellDescription) -> Cell {
     let mut cell = Cell::new(description, 1).unwrap();
     for (part, sector) in [("LINKBAR1_BH", 1), ("LCLEVIS_BH", 2)] {
@@ -36,7 +35,6 @@ fn cell(description: &CellDescription) -> Cell {
     cell
 }
 
-/// The frame of each link in the world.
 fn frames(cell: &Cell) -> BTreeMap<String, Frame> {
     let mut frames = BTreeMap::from([("world".to_owned(), Frame::identity())]);
     for link in cell.links().into_iter().chain(cell.fixed_links()) {
@@ -48,7 +46,6 @@ fn frames(cell: &Cell) -> BTreeMap<String, Frame> {
     frames
 }
 
-/// A closed surface in world coordinates, with its bounding box.
 struct Solid {
     triangles: Vec<[Vector; 3]>,
     low: Vector,
@@ -204,7 +201,6 @@ fn each_look_belongs_to_a_link_and_has_closed_surfaces() {
     }
 }
 
-/// JSON and binary part of a GLB file.
 fn parts_of(glb: &[u8]) -> (serde_json::Value, &[u8]) {
     let number = |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().unwrap()) as usize;
     assert_eq!((&glb[..4], number(4), number(8)), (&b"glTF"[..], 2, glb.len()));

@@ -1,4 +1,4 @@
-//! Tests of the simulated cell, in one program, because each program takes a while to link.
+//! Tests of the simulated cell, in one program because linking is slow.
 
 mod closed_forms;
 mod description;

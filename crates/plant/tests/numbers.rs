@@ -22,7 +22,6 @@ fn numbers(text: &str) -> Vec<Range<usize>> {
         }
         let part = !quoted && !remark && (character.is_ascii_digit() || "+-.".contains(character));
         match (part, begin) {
-            // A digit in a name is not a number.
             (true, None) if text[..at].ends_with([' ', '[', '=', ',', '\n']) => begin = Some(at),
             (false, Some(start)) => {
                 let is_value = [' ', ',', ']', '\n', '}'].contains(&character);
@@ -35,7 +34,6 @@ fn numbers(text: &str) -> Vec<Range<usize>> {
     found
 }
 
-/// Runs ten ticks of a cell, if it can be built.
 fn runs(text: &str) -> Result<(), String> {
     let description = CellDescription::from_toml(text).map_err(|error| error.to_string())?;
     let mut cell = Cell::new(&description, 1).map_err(|error| error.to_string())?;
@@ -73,8 +71,7 @@ fn every_number_is_refused_with_a_message_or_runs() {
     assert!(panicked.is_empty(), "{panicked:#?}");
 }
 
-/// The expected values in the message that rejects a value at this place of the text; `None` if the cell is not
-/// rejected.
+/// The expected values in the message that rejects a value here; `None` if the cell is accepted.
 fn expected(text: &str, place: &Range<usize>, value: &str) -> Option<String> {
     let changed = format!("{}{value}{}", &text[..place.start], &text[place.end..]);
     let report = CellDescription::from_toml(&changed).err()?;

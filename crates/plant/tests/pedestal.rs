@@ -13,7 +13,6 @@ fn pedestal() -> Frame {
     PED.to_frame().unwrap()
 }
 
-/// A clevis on the palm of the hand, its thickness along the radial line.
 fn with_clevis() -> Rig {
     let mut rig = Rig::new(&description(), 1);
     rig.table_square();
@@ -26,14 +25,12 @@ fn with_clevis() -> Rig {
     rig
 }
 
-/// The robot's grip frame at the clevis, backed off and lifted.
 fn at_part(back: f64, up: f64) -> Frame {
     let frame = table(&[(System::Tool, [64, 0, 100])]).apply(&pedestal());
     let frame = frame.shifted(Vector::new(-back, 0.0, 0.0));
     Frame { position: frame.position + Vector::new(0.0, 0.0, up), ..frame }
 }
 
-/// Move the open gripper to the part.
 fn come(rig: &mut Rig) {
     rig.go(at_part(15.0, 6.0), 10.0);
     rig.open(3.5);
@@ -47,7 +44,6 @@ fn leave(rig: &mut Rig) {
     rig.go(at_part(15.0, 6.0), 10.0);
 }
 
-/// The part in the pedestal's frame.
 fn part(rig: &Rig) -> Frame {
     pedestal().inverse().compose(&rig.part_frame())
 }
@@ -95,7 +91,6 @@ fn pedestal_hand_holds_and_turns_a_part() {
     rig.ticks(20);
     let before = part(&rig);
     assert!(before.position.y.abs() < 0.002, "drawn to the middle: {:?}", before.position);
-    // It has been at rest long enough to sleep.
     rig.ticks(500);
     rig.table(MotorOrder::Turn, 18_350);
     rig.ticks(20);
@@ -189,7 +184,7 @@ fn part_slides_between_two_pulling_hands() {
 }
 
 #[test]
-fn what_nothing_holds_falls() {
+fn part_without_a_holder_falls() {
     let mut rig = with_clevis();
     rig.pedestal_close(50.0);
     come(&mut rig);

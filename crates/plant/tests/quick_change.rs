@@ -8,7 +8,6 @@ use geometry::{
 use interfaces::device::{GripValves, HolsterSensors, JawValves, QuickChangeValves, valve};
 use plant::CellEvent;
 
-/// Poses of the cell proposal, §4.
 const HOL_V1: Pose =
     Pose { wrist: [152, -4372, 2619], tool: [188, -5397, -200], finger: [3186, -5292, -200] };
 const HOL_R: Pose =
@@ -22,7 +21,6 @@ const LOCK: QuickChangeValves = QuickChangeValves { lock: true, unlock: false, p
 const UNLOCK: QuickChangeValves = QuickChangeValves { lock: false, unlock: true, port: true };
 const FULL: u8 = 0x0F;
 
-/// A position over a holster, by its distances up and forward, in.
 fn over(holster: &Pose, up: f64, forward: f64) -> Frame {
     holster.to_frame().unwrap().shifted(Vector::new(-up, 0.0, forward))
 }
@@ -128,7 +126,6 @@ fn every_gripper_can_be_attached_and_used() {
         assert_eq!(rig.inputs.grip.strain_left > 0, id == 1, "only the parts gripper has strain gages");
         (rig.outputs.v_grip, rig.outputs.tool_grip) = Default::default();
         rig.outputs.grip.bits = 0;
-        // Put it back into the same holster.
         rig.go_and_stop(over(&holster, 0.3, 0.0), 2.0);
         air(&mut rig, UNLOCK);
         rig.go_and_stop(over(&holster, 0.3, 1.5), 1.0);

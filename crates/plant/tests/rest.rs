@@ -1,7 +1,7 @@
 //! Bodies at rest stay at rest: parts that are held or stacked for a minute, and the arm at its command.
 //!
-//! The linkbar job depends on gaps of a millimetre (cell proposal, §2). 0.5 mm per minute is permitted; the limit here
-//! is 0.1 mm. 0.1 mm.
+//! The linkbar job depends on gaps of a millimetre (cell proposal, §2): 0.5 mm per minute is permitted, the limit here
+//! is 0.1 mm.
 
 use crate::rig::{self, CELL, Rig, UNIT_V1, description, scenes, table};
 use geometry::{
@@ -11,10 +11,8 @@ use geometry::{
 use interfaces::device::JawValves;
 use plant::{CellDescription, WorkstationAction};
 
-/// A minute, ticks.
-const MINUTE: u32 = 1500;
-/// 0.1 mm, in.
-const LIMIT: f64 = 0.1 / 25.4;
+const MINUTE: u32 = 1500; // ticks
+const LIMIT: f64 = 0.1 / 25.4; // 0.1 mm, in
 
 fn with_block(weight: f64) -> CellDescription {
     let text = format!("{CELL}\n[[part]]\nname = \"BLOCK\"\nsize = [2.0, 2.0, 2.0]\nweight = {weight}\n");

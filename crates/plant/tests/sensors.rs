@@ -28,8 +28,7 @@ fn along_tool(rig: &mut Rig) -> f64 {
 fn force_without_calibration_is_wrong() {
     let mut rig = with_tool_gripper(3.0);
     rig.ticks(10);
-    // The gripper has no contact. The drum's guarded moves stop at 25 lb against the tool. With the raw reading
-    // they would stop at almost twice as much, because weight and offset act in the other direction.
+    // The drum's guarded moves stop at 25 lb. With the raw reading they would stop at almost twice as much.
     let bias = along_tool(&mut rig);
     assert!((20.0..28.0).contains(&bias), "{bias} lb of weight and offset at HOME");
     // Like CAL-SENSOR: subtract the mean of ten readings at rest. A tenth of 25 lb is then detected.
@@ -88,7 +87,6 @@ fn late_converters_show_old_values() {
     assert_eq!(rig.inputs.grip.potentiometer, before + 28);
 }
 
-/// Move over a sector of UNIT_1 with GR-PIC, and take a second picture.
 fn look(rig: &mut Rig, number: u32, variation: u8, aside: [f64; 2]) -> VisionResponse {
     let sector = description().tray("UNIT_1").unwrap().sector(4).unwrap();
     let place = sector.shifted(Vector::new(0.0, aside[0], aside[1]));
@@ -101,7 +99,6 @@ fn look(rig: &mut Rig, number: u32, variation: u8, aside: [f64; 2]) -> VisionRes
     rig.inputs.vision
 }
 
-/// A rig over UNIT_1 with its fingers open.
 fn at_unit(reflectance: f64) -> Rig {
     let mut cell = description();
     for part in &mut cell.part {

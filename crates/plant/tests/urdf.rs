@@ -1,5 +1,4 @@
-//! The URDF of the cell as read by a viewer: XML, one tree of links and joints, every moving joint with an axis and
-//! limits.
+//! The URDF of the cell as a viewer reads it: one tree, every moving joint with an axis and limits.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -4,8 +4,7 @@ use crate::rig::{self, PFIX, Rig, description};
 use geometry::frame::{Frame, Vector, rotation_by, rotation_from_x_y};
 use plant::{CellEvent, WorkstationAction, WorkstationError};
 
-/// A bar upright in the vise: its middle at `position` in the fixture's frame, tilted to the front by `lean` degrees
-/// about the front edge of the ledge.
+/// A bar upright in the vise: its middle in the fixture's frame, tilted by `lean` degrees about the ledge's front edge.
 pub fn upright(position: Vector, lean: f64) -> Frame {
     let fixture = PFIX.to_frame().unwrap();
     let square = rotation_from_x_y(&Vector::x(), &Vector::y()).unwrap();

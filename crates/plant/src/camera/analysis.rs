@@ -1,14 +1,10 @@
 //! Analysis of a picture (V.2.1 LOCATE-OBJ): the centroid; for the second picture also the angle and recognition.
 //!
-//! It uses only the visible points of each part ([`Subject`]), so its results are equal bit for bit in the cell
-//! and in another process. It computes centroid and lengths from these points: for a part that is cut by the
-//! edge of the picture or half hidden, the centroid is off its middle and recognition fails. Parts that touch
-//! in the picture are one blob.
+//! It uses only the visible points of each part ([`Subject`]), so another process gets equal results. A part that is
+//! cut off or half hidden has its centroid off its middle and is not recognised. Parts that touch are one blob.
 //!
-//! Positions are those of a pinhole camera: a part nearer than the expected range looks larger and farther from
-//! the axis. The second picture also measures the outline, which identifies the part. `variation` selects the
-//! exposure: a part with too little reflectance for it is not in the picture; one with too much blooms, and its
-//! outline grows. LOCATE-OBJ tries the variations in turn.
+//! The camera is a pinhole camera. The second picture also measures the outline, which identifies the part. `variation`
+//! selects the exposure: too little reflectance hides a part, too much makes it bloom.
 
 use geometry::{
     frame::Vector,
@@ -26,16 +22,13 @@ use crate::{
     noise::{Noise, Stream},
 };
 
-/// An answer and the time until it is due.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 struct Pending {
     #[serde(with = "crate::image::record")]
     answer: VisionResponse,
-    /// Ticks until the answer.
-    ticks: u32,
+    ticks: u32, // ticks until the answer
 }
 
-/// The analysis of the camera's pictures.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Analysis {
     description: Description,
@@ -47,7 +40,6 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// An analysis before its first request; `seed` is that of the run.
     #[must_use]
     pub fn new(description: &Description, seed: u64) -> Self {
         Self {
@@ -59,16 +51,12 @@ impl Analysis {
         }
     }
 
-    /// Draw the noise from another seed from now on.
     pub(crate) fn reseed(&mut self, seed: u64) {
         self.noise = Noise::new(seed, Stream::Camera);
     }
 
-    /// Fingerprint of the entries of a cell on which the answers depend, in addition to seed and pictures: the
-    /// camera, and the parts with a vision id. Two analyses with the same fingerprint give the same answers.
-    ///
-    /// # Panics
-    /// If a description cannot be serialised, which is a fault of this crate.
+    /// Fingerprint of the entries on which the answers depend in addition to seed and pictures: the camera, and the
+    /// parts with a vision id.
     #[must_use]
     pub fn fingerprint(cell: &CellDescription) -> u64 {
         let known = cell.part.iter().filter(|part| part.vision_id != 0);
@@ -81,13 +69,11 @@ impl Analysis {
         digest.value()
     }
 
-    /// True if `request` is a new one, for which a picture must be taken.
     #[must_use]
     pub fn wants_picture(&self, request: &VisionRequest) -> bool {
         request.number != 0 && request.number != self.last && request.picture != Picture::None
     }
 
-    /// Start the analysis of a new request; `subjects` are the visible parts.
     pub fn expose(&mut self, request: &VisionRequest, subjects: &[Subject], expected: Option<&PartType>) {
         self.last = request.number;
         let answer = self.analyse(request, subjects, expected);
@@ -100,7 +86,6 @@ impl Analysis {
             VisionResponse { echo: request.number, status: VisionStatus::Busy, ..VisionResponse::default() };
     }
 
-    /// The answer at the end of a tick.
     pub fn answer(&mut self) -> VisionResponse {
         match &mut self.pending {
             Some(Pending { answer, ticks }) if *ticks <= 1 => {
@@ -167,14 +152,12 @@ impl Analysis {
         }
     }
 
-    /// True if the analysis fails at random. It draws a number only if such failures are configured.
     fn fails(&mut self) -> bool {
         let chance = self.description.failure;
         chance > 0.0 && (self.noise.within(1.0) + 1.0) / 2.0 < chance
     }
 
-    /// Least and greatest reflectance that a variation exposes correctly; the variation after the last one is the first
-    /// again.
+    /// Least and greatest reflectance that a variation exposes correctly; the variations repeat.
     fn exposure(&self, variation: u8) -> [f64; 2] {
         let exposures = &self.description.exposures;
         exposures.get(usize::from(variation) % exposures.len().max(1)).copied().unwrap_or([0.0, 1.0])
@@ -194,8 +177,8 @@ impl Analysis {
     }
 }
 
-/// Right-hand roll about X, 0.01 degree, that turns Y onto the edge to grip across: the longer edge for grip 1, else
-/// the shorter one (VII.7.6).
+/// Right-hand roll about X, 0.01 degree, that turns Y onto the edge to grip across: for grip 1 the longer one
+/// (VII.7.6).
 fn grip_angle(edges: &[(Vector, f64); 2], grip: i16, noise: f64) -> i32 {
     let [first, second] = edges;
     let widest = grip.unsigned_abs() == 1;
@@ -206,7 +189,6 @@ fn grip_angle(edges: &[(Vector, f64); 2], grip: i16, noise: f64) -> i32 {
     if folded > 9_000 { folded - 18_000 } else { folded }
 }
 
-/// True if the two measured lengths are those of a face of the part.
 fn looks_like(part: &PartType, measured: [f64; 2], tolerance: f64) -> bool {
     let [x, y, z] = part.size;
     let near = |a: f64, b: f64| (a - b).abs() <= tolerance;
@@ -233,14 +215,12 @@ mod tests {
         Optics::new(&cell().camera)
     }
 
-    /// GR-PIC of the cell proposal.
     fn gr_pic() -> Movetable {
         let line = |system, values| MovetableLine { system, values };
         Movetable::from_lines(&[line(System::Tool, [-1468, 0, -252]), line(System::ToolOrigin, [-300, 0, 0])])
             .unwrap()
     }
 
-    /// A bar in its place, seen from the view point above it.
     fn bar(y: f64, z: f64, roll: f64) -> Subject {
         let place = straight_down(Vector::new(-50.75, 10.25, -16.55));
         let part =
@@ -249,7 +229,6 @@ mod tests {
         seen(&view.inverse().compose(&part), Vector::new(0.625, 0.625, 4.0), 0.5)
     }
 
-    /// A part in camera axes, visible where it is in the field of view.
     fn seen(frame: &Frame, size: Vector, reflectance: f64) -> Subject {
         let optics = optics();
         Subject::new(Face::of(frame, &size), reflectance, |point| optics.has_in_view(&point))
@@ -312,7 +291,6 @@ mod tests {
         assert!((near.y + 100).abs() <= 6, "{near:?}");
     }
 
-    /// A frame 590 mm in front of the camera, turned as parts lie there.
     fn before() -> Frame {
         Frame { position: Vector::new(23.54, 0.0, 0.0), ..Frame::identity() }
     }

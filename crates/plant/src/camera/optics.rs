@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::{convert::inches, description::Camera as Description};
 
-/// The camera in its mount on the wrist.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Optics {
     description: Description,

@@ -9,13 +9,10 @@ pub const RASTER: usize = 9;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subject {
     face: Face,
-    /// Reflectance: the fraction of the light that it reflects.
-    reflectance: f64,
-    /// The visible points of the raster, row by row.
-    seen: Vec<bool>,
+    reflectance: f64, // Reflectance: the fraction of the light that it reflects
+    seen: Vec<bool>,  // the visible points of the raster, row by row
 }
 
-/// The face of a part towards the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
     pub centre: Vector,
@@ -93,7 +90,6 @@ impl Subject {
         self.seen_points().flat_map(move |point| [a + b, a - b, b - a, -a - b].map(|corner| point + corner))
     }
 
-    /// The centroid of the visible points.
     #[must_use]
     pub fn centroid(&self) -> Vector {
         let count = self.seen.iter().filter(|seen| **seen).count();

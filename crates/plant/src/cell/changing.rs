@@ -14,7 +14,6 @@ use crate::{
 const AWAY: Vector = Vector::new(0.0, 0.0, -100.0);
 
 impl Cell {
-    /// Move the ring, catch or release grippers, and move their bodies.
     pub(super) fn change_grippers(&mut self, dt: f64, valves: &QuickChangeValves) {
         let robot = self.t3.arm().tool();
         let changes = self.changer.advance(dt, &robot, valves);
@@ -37,7 +36,6 @@ impl Cell {
         self.lead_grippers(&robot);
     }
 
-    /// Move the bodies of the grippers to their start positions.
     pub(super) fn hang_grippers(&mut self) {
         let robot = self.t3.arm().tool();
         for hand in ROBOT_HANDS {
@@ -49,12 +47,8 @@ impl Cell {
         }
     }
 
-    /// Place a gripper that is not on the robot in a holster, numbered from 0 in the order of the grippers'
-    /// ids, or remove it from the cell, like a person.
-    ///
-    /// # Errors
-    /// [`WorkstationError`] if the gripper or holster does not exist, the quick change has the gripper, or
-    /// another one is in the holster. The state is then unchanged.
+    /// Place a gripper in a holster, numbered from 0 in the order of the ids, or remove it from the cell, like a
+    /// person. On error, the state is unchanged.
     pub fn hang_gripper(&mut self, id: u8, holster: Option<usize>) -> Result<(), WorkstationError> {
         let hand = self.changer.hang(id, holster)?;
         let (gripper, world) = self.hand_at_work(hand);
@@ -64,7 +58,6 @@ impl Cell {
         Ok(())
     }
 
-    /// Move the bodies of the grippers to their places on robot and holsters.
     fn lead_grippers(&mut self, robot: &Frame) {
         for (slot, hand) in ROBOT_HANDS.into_iter().enumerate() {
             let present = self.changer.is_present(hand);
@@ -80,7 +73,6 @@ impl Cell {
         }
     }
 
-    /// Readings of the proximity sensors of the holsters.
     pub(super) fn holster_sensors(&mut self) -> HolsterSensors {
         let frames = [0, 1, 2].map(|slot| to_frame(self.world.bodies[self.grippers[slot].hand()].position()));
         self.changer.holster_sensors(&self.description, &frames)

@@ -1,6 +1,4 @@
-//! Bodies of the clearance check: the moving parts of the robot, and the obstacles ([`crate::bodies`]).
-//!
-//! A held part is checked at its true position, because it can move in the fingers.
+//! Bodies of the clearance check ([`crate::bodies`]). A held part is checked at its true position.
 
 use super::{Cell, CellEvent};
 use crate::{
@@ -12,7 +10,6 @@ use crate::{
 };
 
 impl Cell {
-    /// Find new contacts. Called once per tick.
     pub(super) fn check_clearance(&mut self) {
         let mut obstacles = self.devices();
         obstacles.extend(self.part_bodies());
@@ -23,7 +20,6 @@ impl Cell {
         self.events.extend(begun.into_iter().map(CellEvent::Contact));
     }
 
-    /// The robot and its load.
     pub(super) fn movers(&self) -> Vec<Body> {
         let mut movers = Vec::from(self.arm_bodies());
         movers.extend(self.worn_bodies());
@@ -40,8 +36,7 @@ impl Cell {
     }
 
     /// Contacts of the robot at the end of the last tick, and pairs nearer than the margin of
-    /// [`Cell::watch_clearance`]: each pair of names once, at its deepest point, without pairs that may always
-    /// touch. The controller does not receive them: a T3 has no contact sensors.
+    /// [`Cell::watch_clearance`]: each pair of names once, at its deepest point. The controller does not receive them.
     #[must_use]
     pub fn contacts(&self) -> &[Contact] {
         self.clearance.contacts()
@@ -56,7 +51,6 @@ impl Cell {
         bodies::arm(&self.description, &self.joints())
     }
 
-    /// A plate, camera, and the gripper on the robot.
     fn worn_bodies(&self) -> Vec<Body> {
         let tool = self.t3.arm().tool();
         let mut worn = Vec::from(bodies::quick_change(&self.description, &tool));
@@ -67,26 +61,22 @@ impl Cell {
         worn
     }
 
-    /// The part that the robot holds.
     fn held_body(&self) -> Option<Body> {
         let (index, _) = self.hand(self.changer.carried()?).hold.as_ref()?;
         let part = &self.parts[*index];
         Some(bodies::held(&part.kind, &part.pose(&self.world)))
     }
 
-    /// The parts that the robot does not hold.
     fn part_bodies(&self) -> impl Iterator<Item = Body> {
         let others = (0..self.parts.len()).filter(|index| !self.is_held(*index));
         others.map(|index| bodies::part(&self.parts[index].kind, &self.parts[index].pose(&self.world)))
     }
 
-    /// The movable jaw where it is now.
     pub(super) fn jaw_bodies(&self) -> Vec<Body> {
         let jaw = to_frame(self.world.bodies[self.vise.jaw()].position());
         bodies::movable_jaw(&self.description, &jaw)
     }
 
-    /// The grippers that are neither on the robot nor mated with it.
     fn stored_gripper_bodies(&self) -> impl Iterator<Item = Body> {
         let apart = ROBOT_HANDS.into_iter().filter(|hand| {
             self.changer.mated() != Some(*hand) && self.changer.place(*hand) != Some(GripperPlace::Robot)
@@ -97,7 +87,6 @@ impl Cell {
         })
     }
 
-    /// Palm and fingers of the pedestal's hand.
     fn pedestal_bodies(&self) -> [Body; 3] {
         bodies::pedestal(&self.description, &self.pedestal.frame(), self.pedestal.hand.air.opening())
     }

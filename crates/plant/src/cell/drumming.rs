@@ -13,8 +13,7 @@ use crate::{
     hand::HANDS,
 };
 
-/// Tools farther than this from the drum are ignored, in.
-const NEAR: f64 = 4.0;
+const NEAR: f64 = 4.0; // tools farther than this from the drum are ignored, in
 
 impl Cell {
     /// Before a step of `dt` seconds: apply the drum's force to its tool.
@@ -44,7 +43,6 @@ impl Cell {
         }
     }
 
-    /// The tool in the drum or in front of it, and its position; registers a tool that arrives.
     fn tool_at_drum(&mut self) -> Option<(Pocketed, Entering)> {
         if let Some(pocketed) = self.drum.tool {
             let frame = self.parts[pocketed.part].frame(&self.world);
@@ -59,7 +57,6 @@ impl Cell {
         self.drum.tool.map(|pocketed| (pocketed, entering))
     }
 
-    /// Fix a tool in the drum, or release it.
     fn lead_by_drum(&mut self, pocketed: &Pocketed, fast: bool) {
         if pocketed.fast == fast {
             return;
@@ -76,14 +73,12 @@ impl Cell {
         }
     }
 
-    /// Release the tool from the drum.
     pub(super) fn free_drum(&mut self) {
         if let Some(left) = self.drum.tool.take() {
             self.lead_by_drum(&left, false);
         }
     }
 
-    /// True if part `index` is fixed in the drum.
     pub(super) fn is_in_drum(&self, index: usize) -> bool {
         self.drum.tool.is_some_and(|pocketed| pocketed.part == index && pocketed.fast)
     }
@@ -94,14 +89,11 @@ impl Cell {
         Some(libm::hypot(entering.left, entering.aside))
     }
 
-    /// Name of the location of the drum.
     pub(super) fn drum_location(&self) -> &str {
         self.drum.location()
     }
 
-    /// Close the fingers of the drum on the tool that is in its place, or open them.
-    ///
-    /// # Errors
+    /// Close the fingers of the drum on the tool that is in its place, or open them. Fails with
     /// [`WorkstationError::NothingToGrip`] if no tool is there, [`WorkstationError::NotInPlace`] if a tool blocks the
     /// fingers.
     pub(super) fn set_drum_fingers(&mut self, closed: bool) -> Result<(), WorkstationError> {
@@ -125,10 +117,8 @@ impl Cell {
         Ok(())
     }
 
-    /// Put a tool into its place in the drum, whose fingers then hold it.
-    ///
-    /// # Errors
-    /// [`WorkstationError::Occupied`] if the place is not free.
+    /// Put a tool into its place in the drum, whose fingers then hold it. Fails with [`WorkstationError::Occupied`] if
+    /// the place is not free.
     pub(super) fn put_into_drum(&mut self, kind: &PartType) -> Result<(), WorkstationError> {
         self.drum.set_closed(false);
         let place = self.drum.seat();
@@ -136,7 +126,6 @@ impl Cell {
         self.set_drum_fingers(true)
     }
 
-    /// The fingers of the drum are closed.
     #[must_use]
     pub fn drum_closed(&self) -> bool {
         self.drum.closed()

@@ -17,10 +17,8 @@ use crate::{
 pub enum CellError {
     #[error(transparent)]
     Description(#[from] DescriptionError),
-    /// The arm cannot take the start position of the description.
     #[error("robot.start: {0}")]
     Start(#[from] DriveError),
-    /// The robot collides with something at the start.
     #[error("robot.start: {0}")]
     Blocked(CellEvent),
 }
@@ -29,51 +27,47 @@ pub enum CellError {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[non_exhaustive]
 pub enum CellEvent {
-    /// The robot, or its load, has begun to touch a body that it may never touch, or deeper than any command
-    /// permits. Contacts that only some commands permit are checked where the commands are known:
-    /// [`Cell::contacts`](super::Cell::contacts).
+    /// The robot or its load touches a body that it may never touch, or deeper than any command permits. See
+    /// [`Cell::contacts`](super::Cell::contacts) for contacts that only some commands permit.
     Contact(Contact),
     /// A part slides in a hand: the load exceeds the hand's force and friction.
     Slipped {
         part: String,
         hand: String,
-        /// How far it has slid since it was gripped, in.
-        distance: f64,
+        distance: f64, // how far it has slid since it was gripped, in
     },
-    /// A hand has lost the part that it held.
-    Dropped { part: String, hand: String },
-    /// The gripper has forced a part out of the closed vise.
-    ForcedOut { part: String },
+    Dropped {
+        part: String,
+        hand: String,
+    },
+    ForcedOut {
+        part: String,
+    },
     /// The quick change has released a gripper that was not over an empty holster.
-    GripperFell { gripper: String },
+    GripperFell {
+        gripper: String,
+    },
     /// The robot lifted a gripper in the seat of its holster, and the lips detached it from the quick change.
-    GripperTorn { gripper: String },
-    /// A part lies on the floor.
-    Fell { part: String },
-    /// The T3 controller shows a warning.
+    GripperTorn {
+        gripper: String,
+    },
+    Fell {
+        part: String,
+    },
     Warning(#[serde(with = "crate::image::record")] Warning),
-    /// An arm without pressure is at rest.
     Sagged(Droop),
-    /// The lamps of the T3 controller have changed.
     Lamps(Lamps),
-    /// A visible event of the robot.
     Robot(RobotEvent),
     /// The simulated arm cannot reach the position of the robot that it follows, and does not move.
     CannotFollow(JointProblem),
-    /// The position of a body was not finite; the body was removed from the simulation.
     Quarantined,
-    /// The jaw of the vise does not move.
     ViseStuck,
-    /// A fault of the fault plan begins.
     FaultBegins {
-        /// Its number in the file, from 1.
-        number: usize,
+        number: usize, // its number in the file, from 1
         text: String,
     },
-    /// A fault of the fault plan ends.
     FaultEnds {
-        /// Its number in the file, from 1.
-        number: usize,
+        number: usize, // its number in the file, from 1
         text: String,
     },
 }

@@ -1,13 +1,11 @@
 //! Parts in hands and vise: blocking, gripping, slipping, releasing.
 //!
-//! The robot's gripper and the pedestal's hand work alike. During a handover both hold the part; a part can
-//! also be in a hand and in the vise. These rules decide which of them yields:
+//! During a handover both hands hold the part; a part can also be in a hand and in the vise:
 //!
-//! * a hand that closes on a part held by something else stops where its nearer finger touches, and grips the part as
-//!   it lies; it draws the part to its middle when the other holder releases it;
+//! * a hand that closes on a part held by something else stops where its nearer finger touches, and draws the part to
+//!   its middle when the other holder releases it;
 //! * the vise is stronger than a hand: the rest position of the hand's springs follows the part in the vise;
-//! * two hands both hold by their springs, and each slides beyond its friction: a robot that moves with a part that the
-//!   pedestal also holds pulls it out of the weaker of the two.
+//! * two hands both hold by their springs, and each slides beyond its friction.
 
 use rapier3d_f64::prelude::*;
 
@@ -24,10 +22,8 @@ use crate::{
     vise::Clamped,
 };
 
-/// Least slide of a part in the fingers that is reported, in.
-const SLIP: f64 = 0.02;
-/// Ticks after which the vise reports a jaw that does not move (2 s).
-const JAW_PATIENCE: u32 = 50;
+const SLIP: f64 = 0.02; // least slide of a part in the fingers that is reported, in
+const JAW_PATIENCE: u32 = 50; // ticks after which the vise reports a jaw that does not move (2 s)
 /// Greatest penetration of a part into a clamping face at which it is still between the jaws, m.
 const OUTSIDE: Real = 2e-3;
 /// A part is also in a step of the jaws if it covers this fraction of the largest area that it covers in any step.
@@ -48,7 +44,6 @@ impl Cell {
         (gripper, &mut self.world)
     }
 
-    /// Move the fingers of a hand by their air supply, and grip or release the part between them.
     pub(super) fn drive_fingers(&mut self, dt: f64, hand: Hand, supply: Supply) {
         let between = match &self.hand(hand).hold {
             Some((index, _)) => self.between_fingers(hand, *index).map(|squeeze| (*index, squeeze)),
@@ -64,7 +59,6 @@ impl Cell {
         self.update_grip(hand, between, stop);
     }
 
-    /// Width and faces of part `index` between the fingers of a hand.
     fn between_fingers(&self, hand: Hand, index: usize) -> Option<Squeeze> {
         let part = self.parts.get(index)?;
         let gripper = self.hand(hand);
@@ -76,7 +70,6 @@ impl Cell {
         )
     }
 
-    /// The widest free part between the fingers of a hand, with its geometry.
     fn first_between_fingers(&self, of: Hand) -> Option<(usize, Squeeze)> {
         let hand = self.world.bodies[self.hand(of).hand()].translation();
         let near = self.parts.iter().enumerate().filter(|(_, part)| {
@@ -86,7 +79,6 @@ impl Cell {
         grasp::widest(self.hand(of).air.opening(), between)
     }
 
-    /// Opening at which a part stops the fingers of a hand, in.
     fn finger_stop(&self, hand: Hand, index: usize, squeeze: &Squeeze) -> f64 {
         grasp::stop(squeeze, self.hand(hand).hold.is_some() || self.is_held_elsewhere(hand, index))
     }
@@ -95,24 +87,20 @@ impl Cell {
         self.vise.clamped.is_some_and(|clamped| clamped.part == index)
     }
 
-    /// True if `hand` holds part `index`.
     pub(super) fn is_held_by(&self, hand: Hand, index: usize) -> bool {
         self.hand(hand).hold.as_ref().is_some_and(|(held, _)| *held == index)
     }
 
-    /// True if the robot holds part `index`.
     pub(super) fn is_held(&self, index: usize) -> bool {
         ROBOT_HANDS.into_iter().any(|hand| self.is_held_by(hand, index))
     }
 
-    /// True if something other than `hand` holds part `index`.
     pub(super) fn is_held_elsewhere(&self, hand: Hand, index: usize) -> bool {
         self.is_clamped(index)
             || self.is_in_drum(index)
             || hand.others().any(|other| self.is_held_by(other, index))
     }
 
-    /// True if a hand or the vise holds part `index`.
     pub(super) fn is_had(&self, index: usize) -> bool {
         self.is_clamped(index)
             || self.is_in_drum(index)
@@ -143,7 +131,6 @@ impl Cell {
         self.parts[index].set_holders(&mut self.world, holders);
     }
 
-    /// Grip, tighten, loosen or release, depending on force and geometry.
     fn update_grip(&mut self, hand: Hand, between: Option<(usize, Squeeze)>, stop: Option<f64>) {
         let gripper = self.hand(hand);
         let clamp = Clamp { force: gripper.force(), friction: gripper.friction() };
@@ -174,7 +161,6 @@ impl Cell {
         self.note_holders(index);
     }
 
-    /// Release the part of a hand; `lost` if the fingers have not opened.
     pub(super) fn let_go(&mut self, hand: Hand, lost: bool) {
         let (gripper, world) = self.hand_at_work(hand);
         let Some((index, hold)) = gripper.hold.take() else { return };
@@ -189,8 +175,7 @@ impl Cell {
         }
     }
 
-    /// Called when the other holder has released part `index`: a hand that holds it draws it to the middle of
-    /// its fingers.
+    /// Called when the other holder has released the part: a hand that holds it draws it to its middle.
     pub(super) fn recover(&mut self, hand: Hand, index: usize) {
         let (gripper, world) = self.hand_at_work(hand);
         if let Some((_, hold)) = gripper.hold.as_mut().filter(|(held, _)| *held == index) {
@@ -217,8 +202,8 @@ impl Cell {
         }
     }
 
-    /// The part that stops the jaw first, its step and its geometry. Of the steps whose faces it covers well, it is the
-    /// shallowest, which stops the jaw. A bar that is pressed against the back of its step is not in the next one.
+    /// The part that stops the jaw first, its step and its geometry: of the steps whose faces it covers well, the
+    /// shallowest.
     fn between_jaws(&self) -> Option<(usize, usize, Squeeze)> {
         let standing = (0..self.parts.len()).filter_map(|index| {
             let offers: Vec<_> = self
@@ -239,8 +224,7 @@ impl Cell {
         standing.max_by(|a, b| stop(a).total_cmp(&stop(b)))
     }
 
-    /// Clamp a part between the jaws, or move it with them: flush with the faces, its middle at `middle` (m) across
-    /// them.
+    /// Clamp a part between the jaws, or move it with them; `middle` (m) is its middle across them.
     pub(super) fn clamp(&mut self, index: usize, step: usize, squeeze: &Squeeze, middle: Real) {
         let mut rest = squeeze.flush;
         rest.translation.y = middle;
@@ -257,7 +241,6 @@ impl Cell {
         body.set_next_kinematic_position(next);
     }
 
-    /// Release the part in the vise.
     pub(super) fn unclamp(&mut self) {
         let Some(Clamped { part, .. }) = self.vise.clamped.take() else { return };
         for hand in HANDS {
@@ -288,14 +271,12 @@ impl Cell {
         }
     }
 
-    /// Width and faces of part `index` between the jaws in one of their steps.
     pub(super) fn between_jaws_of(&self, index: usize, step: usize) -> Option<Squeeze> {
         let part = self.parts.get(index)?;
         let base = to_pose(self.vise.frame());
         squeeze(&base.inv_mul(&part.pose(&self.world)), &part.solid(), &self.vise.pads(step))
     }
 
-    /// Before a time step: apply friction to parts that slide in a hand.
     pub(super) fn rub_holds(&mut self, dt: f64) {
         for hand in HANDS {
             let (gripper, world) = self.hand_at_work(hand);
@@ -332,7 +313,6 @@ impl Cell {
         }
     }
 
-    /// The light beams between the fingers that a part interrupts, one bit each.
     pub(super) fn broken_beams(&self) -> u8 {
         let gripper = self.hand(Hand::Parts);
         let tool = gripper.loaded_tool(&self.world);
@@ -340,7 +320,6 @@ impl Cell {
         grasp::broken_beams(gripper.air.opening(), parts)
     }
 
-    /// Report a jaw that does not move.
     pub(super) fn note_jaw(&mut self) {
         let stands = self.vise.moving() && self.faults.jaw_stuck();
         self.jaw_waits = if stands { self.jaw_waits + 1 } else { 0 };
@@ -349,7 +328,6 @@ impl Cell {
         }
     }
 
-    /// Report parts that have fallen to the floor.
     pub(super) fn note_falls(&mut self) {
         for index in 0..self.parts.len() {
             let on_floor = self.part_state(index).location == "floor";

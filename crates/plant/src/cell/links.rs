@@ -1,7 +1,4 @@
-//! The poses of the links of [`Scene`] in a cell.
-//!
-//! The pose of every link is given relative to its parent in the URDF, so that a stream of transforms, a stream of
-//! joint angles and the URDF agree.
+//! The poses of the links of [`Scene`] in a cell, each relative to its parent, as in the URDF.
 
 use rapier3d_f64::prelude::*;
 
@@ -14,10 +11,8 @@ use crate::{
     scene::{Finger, Moving, ROOT, Scene, tool_on_end_plate},
 };
 
-/// A link with its pose, metres, in the frame of its parent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkPose {
-    /// The name of its link in the scene.
     pub name: String,
     /// The link in whose frame the pose is given; `world` for the world.
     pub parent: &'static str,
@@ -34,8 +29,8 @@ impl LinkPose {
 }
 
 impl Cell {
-    /// The cell with its present parts, and with later ones, given by their names in the description and in
-    /// that order, so that a log has the geometry before its first tick. Unknown names are omitted.
+    /// The cell with its present and later parts, given by their names in that order, so that a log has the geometry
+    /// before its first tick. Unknown names are omitted.
     #[must_use]
     pub fn scene(&self, coming: &[&str]) -> Scene<'_> {
         let present = self.parts.iter().map(|part| (part.id, &part.kind));
@@ -62,8 +57,8 @@ impl Cell {
         standing.map(|block| LinkPose::new(&block.name, ROOT, &to_pose(&block.frame))).collect()
     }
 
-    /// Names and values of all revolute and prismatic joints: radians, or metres for fingers and jaw. The table of the
-    /// pedestal is at 0 where the fingers move across the radial line.
+    /// Names and values of all revolute and prismatic joints: radians, or metres. The pedestal's table is at 0 where
+    /// the fingers move across the radial line.
     #[must_use]
     pub fn joint_states(&self) -> Vec<(&'static str, f64)> {
         let value = |moving| match moving {
@@ -101,7 +96,6 @@ impl Cell {
     }
 }
 
-/// Name of the link of a part.
 #[must_use]
 pub fn part_link(id: u32) -> String {
     format!("part_{id}")

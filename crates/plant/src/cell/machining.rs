@@ -10,14 +10,11 @@ use crate::{
 
 /// Greatest distance of a part from its seat in the vise (ASSUMED).
 pub(crate) const SEATED: Tolerance = Tolerance { inches: 0.03, degrees: 1.0 };
-/// Greatest distance of a part in a nest from its seat, in.
-const IN_NEST: f64 = 1.0;
+const IN_NEST: f64 = 1.0; // greatest distance of a part in a nest from its seat, in
 
 impl Cell {
-    /// Machine the part at `location`.
-    ///
-    /// # Errors
-    /// [`WorkstationError`] if another part is there, or the part is not at its seat.
+    /// Machine the part at `location`. Fails with [`WorkstationError`] if another part is there, or the part is not at
+    /// its seat.
     pub(super) fn machine(&mut self, from: &str, to: &str, location: &str) -> Result<(), WorkstationError> {
         let next = self.description.kind(to)?.clone();
         let nest = match self.description.machine_at(location, from)? {
@@ -89,7 +86,6 @@ impl Cell {
     }
 }
 
-/// Check that a part is the expected one, and that the next one is not larger than it.
 pub(crate) fn check_part(from: &str, part: &PartType, next: &PartType) -> Result<(), WorkstationError> {
     if part.name != from {
         return Err(WorkstationError::WrongPart { expected: from.into(), found: part.name.clone() });
@@ -97,7 +93,6 @@ pub(crate) fn check_part(from: &str, part: &PartType, next: &PartType) -> Result
     next.is_made_of(part)
 }
 
-/// Check that the distance from the seat, inches and radians, is within the tolerance.
 pub(crate) fn check_seat(
     part: &PartType,
     (distance, angle): (f64, f64),
@@ -110,8 +105,7 @@ pub(crate) fn check_seat(
     Err(WorkstationError::NotSeated { part: part.name.clone(), distance, degrees, allowed })
 }
 
-/// Angle of a part from the nearest attitude that is equivalent to that of its seat, radians: by its faces for a box,
-/// by its axis for a cylinder.
+/// Angle of a part from the nearest attitude that is equivalent to that of its seat, radians.
 pub(crate) fn askew(here: &Frame, shape: Shape) -> f64 {
     let off = |axis: Inches, own: Inches| libm::acos(axis.dot(&own).abs().min(1.0));
     match shape {
@@ -124,8 +118,7 @@ pub(crate) fn askew(here: &Frame, shape: Shape) -> f64 {
     }
 }
 
-/// The side of a part that faces the front of the vise, where it is machined: a unit vector along one of the part's
-/// axes.
+/// The side of a part that faces the front of the vise, as a unit vector along one of the part's axes.
 fn front(here: &Frame) -> [i8; 3] {
     let out = nearest_square(here).rotation.inverse() * -Inches::x();
     let sign = |along: f64| {

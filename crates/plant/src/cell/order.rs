@@ -1,6 +1,4 @@
-//! Checks of a workstation action against the description alone: whether the cell has the names in it.
-//!
-//! The cell checks this before it acts. A job can be checked before the first tick.
+//! Checks the names in a workstation action against the description, before the first tick of a job.
 
 use diagnostics::nearest;
 use geometry::frame::Frame;
@@ -8,7 +6,6 @@ use geometry::frame::Frame;
 use super::{WorkstationAction, WorkstationError};
 use crate::description::{CellDescription, Nest, PartType};
 
-/// Place on which a part can be put down.
 pub(crate) enum Spot<'c> {
     Nest(&'c Nest),
     /// On the floor of a tray, with this frame.
@@ -21,10 +18,8 @@ pub(crate) enum Machine<'c> {
 }
 
 impl CellDescription {
-    /// Check that all names in a workstation action are in the cell.
-    ///
-    /// # Errors
-    /// [`WorkstationError`]; [`WorkstationError::blames`] returns the wrong word.
+    /// Check that all names in a workstation action are in the cell. On error: [`WorkstationError::blames`] returns the
+    /// wrong word.
     pub fn admits(&self, action: &WorkstationAction) -> Result<(), WorkstationError> {
         match action {
             WorkstationAction::Place { part, unit, sector, .. } => {
@@ -98,7 +93,6 @@ impl CellDescription {
         tray.sector(sector).map(Spot::Sector).ok_or(unknown)
     }
 
-    /// Where a part is machined at a location.
     pub(crate) fn machine_at(&self, location: &str, part: &str) -> Result<Machine<'_>, WorkstationError> {
         if location == self.vise.location {
             return Ok(Machine::Vise);
@@ -112,10 +106,6 @@ impl CellDescription {
         })
     }
 
-    /// Check that the vise is at a location.
-    ///
-    /// # Errors
-    /// [`WorkstationError::NoVise`] if it is at another one.
     pub fn has_vise_at(&self, location: &str) -> Result<(), WorkstationError> {
         if location == self.vise.location {
             return Ok(());

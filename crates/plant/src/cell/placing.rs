@@ -16,15 +16,11 @@ use crate::{
 const IN_TRAY: f64 = 10.0;
 /// Greatest distance of the centre of a part in a nest from that of the seat, in.
 const IN_NEST: f64 = 1.0;
-/// A part is put down this far above the surface on which it comes to rest, in.
-const DROP: f64 = 0.002;
+const DROP: f64 = 0.002; // a part is put down this far above the surface on which it comes to rest, in
 
 impl CellDescription {
-    /// The frame, world, in, of a part that is delivered into a sector of a unit: offset by `x` and `y` (in) from its
-    /// place there and turned by `angle` (degrees). A part that has nests goes only into a nest.
-    ///
-    /// # Errors
-    /// [`WorkstationError`] if the unit has no such place.
+    /// The frame, world, in, of a part delivered into a sector: offset by `x` and `y` (in) from its place and turned by
+    /// `angle` (degrees). A part that has nests goes only into a nest.
     pub fn delivered(
         &self,
         kind: &PartType,
@@ -40,10 +36,8 @@ impl CellDescription {
         Ok(Frame { position: turned.position + Inches::new(x, y, up), ..turned })
     }
 
-    /// The frame of a part that is put down in a sector; `noise` draws a random place.
-    ///
-    /// # Errors
-    /// [`WorkstationError`] if the unit has no such place.
+    /// The frame of a part that is put down in a sector; `noise` draws a random place. Fails with [`WorkstationError`]
+    /// if the unit has no such place.
     pub(crate) fn placed(
         &self,
         kind: &PartType,
@@ -54,7 +48,6 @@ impl CellDescription {
     ) -> Result<Frame, WorkstationError> {
         let aside = match (*placement, self.spot(kind, unit, sector)?) {
             (Placement::At { x, y, angle }, _) => [x, y, angle],
-            // A part in a nest has the frame of the nest's seat.
             (Placement::Random, Spot::Nest(_)) => [0.0; 3],
             (Placement::Random, Spot::Sector(_)) => {
                 let greatest = self.tray_shape.random_offset;
@@ -108,7 +101,6 @@ impl Cell {
         Ok(())
     }
 
-    /// A body that a part at `frame` would overlap, except the part `but`.
     pub(super) fn in_the_way(&self, kind: &PartType, frame: &Frame, but: Option<u32>) -> Option<String> {
         let part = bodies::part(kind, &to_pose(frame));
         let jaw = self.jaw_bodies();

@@ -1,8 +1,7 @@
 //! The arm without pressure: its loads, its contacts, and their report.
 //!
-//! A powered arm follows its path even through contact; a sagging arm does not. Obstacles push back its rigid parts
-//! with the stiffness of the arm; the simulated contacts act on fingers and held part through their springs. Reported
-//! depths are those of the arm's outline in the obstacle: at 2000 lb/in a tenth of an inch is two hundred pounds.
+//! A sagging arm does not follow a path through contact. Obstacles push back its rigid parts with the stiffness of the
+//! arm. At 2000 lb/in a depth of a tenth of an inch is two hundred pounds.
 
 use geometry::frame::Vector as Inches;
 use rapier3d_f64::{parry::query, prelude::*};
@@ -18,27 +17,20 @@ use crate::{
     t3::Cut,
 };
 
-/// Coefficient of friction between the robot's outline and the surfaces that it rests on (ASSUMED: steel and paint).
 const FRICTION: f64 = 0.30;
 /// Bodies within this distance at the beginning of a tick can be touched during it, in.
 const NEAR: f64 = 0.5;
-/// Least growth of a contact that is recorded, in.
-const LEAST_DEPTH: f64 = 0.001;
+const LEAST_DEPTH: f64 = 0.001; // least growth of a contact that is recorded, in
 
-/// The droop of the arm since it lost its pressure.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Droop {
-    /// Cause of the loss of pressure.
     pub cause: Cut,
-    /// Position of the tool point when the pressure was lost, in.
-    pub position: [f64; 3],
+    pub position: [f64; 3], // position of the tool point when the pressure was lost, in
     /// Contacts since then, each with its greatest depth; the deepest first.
     pub touched: Vec<Contact>,
     pub at_rest: bool,
-    /// The shoulder rests on the shot pin.
     pub on_shot_pin: bool,
-    /// Contacts when the pressure was lost.
-    before: Vec<Contact>,
+    before: Vec<Contact>, // contacts when the pressure was lost
 }
 
 impl Droop {
@@ -74,7 +66,6 @@ impl Droop {
 }
 
 impl Cell {
-    /// The droop since the loss of pressure; `None` while there is pressure.
     #[must_use]
     pub fn droop(&self) -> Option<&Droop> {
         self.droop.as_ref()
@@ -91,7 +82,6 @@ impl Cell {
         self.t3.repair_hydraulics();
     }
 
-    /// Begin or end the record of a droop.
     pub(super) fn watch_pressure(&mut self) {
         match (self.t3.cut(), &self.droop) {
             (None, Some(_)) => self.droop = None,
@@ -109,7 +99,6 @@ impl Cell {
         }
     }
 
-    /// Once per tick: record the contacts of the sagging arm, and whether it is at rest.
     pub(super) fn watch_droop(&mut self) {
         let Some(mut droop) = self.droop.take() else { return };
         droop.note(touching(&self.movers(), &self.all_obstacles()));
@@ -121,7 +110,6 @@ impl Cell {
         self.droop = Some(droop);
     }
 
-    /// All obstacles at their present positions.
     fn all_obstacles(&self) -> Vec<Body> {
         let mut all = self.obstacles.clone();
         all.extend(self.devices());
@@ -144,7 +132,6 @@ impl Cell {
         all
     }
 
-    /// The forces on an arm without pressure; `near` are the bodies that it may touch.
     pub(super) fn loads(&self, near: &[Body]) -> Vec<Load> {
         if self.t3.arm().has_pressure() {
             return Vec::new();
@@ -176,7 +163,6 @@ impl Cell {
         loads
     }
 
-    /// The force of an obstacle on a rigid part of the robot.
     fn push(&self, mover: &Body, obstacle: &Body) -> Option<Load> {
         let contact = meet(mover, obstacle)?;
         let stiffness = self.description.robot.stiffness;
@@ -201,7 +187,6 @@ fn is_rigid(mover: &Body) -> bool {
     matches!(mover.kind, Kind::Arm | Kind::Gripper)
 }
 
-/// The contact of two penetrating bodies; `None` if they are apart.
 fn meet(mover: &Body, obstacle: &Body) -> Option<query::Contact> {
     if mover.is_joined_to(obstacle) || !obstacle.aabb.intersects(&mover.aabb) {
         return None;
@@ -211,7 +196,6 @@ fn meet(mover: &Body, obstacle: &Body) -> Option<query::Contact> {
     (contact.dist < 0.0).then_some(contact)
 }
 
-/// All pairs that touch, each once, with their depth.
 fn touching(movers: &[Body], obstacles: &[Body]) -> Vec<Contact> {
     let mut clearance = Clearance::default();
     clearance.check(&Permits::default(), movers, obstacles.iter())

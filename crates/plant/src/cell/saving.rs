@@ -1,8 +1,7 @@
 //! A cell as bytes, and its digest.
 //!
-//! The saved state contains all data on which the next tick depends: bodies, joints and contacts with the state
-//! of the solver, devices, the noise of the sensors, and unread events. A restored cell continues bit for bit
-//! like the saved one. Fixed bodies are made from the description, which must be the same.
+//! The state contains all data on which the next tick depends, including the solver and the noise. A restored cell
+//! continues bit for bit. Fixed bodies are made from the description, which must be the same.
 //!
 //! ```text
 //! RCSCELL\0   version u32   length u64   digest u64   the state, in postcard
@@ -14,54 +13,41 @@ use rcs_core::digest::Digest;
 use super::Cell;
 use crate::{description::CellDescription, fingerprint, scene::furniture};
 
-/// First bytes of every saved cell.
-const MAGIC: [u8; 8] = *b"RCSCELL\0";
+const MAGIC: [u8; 8] = *b"RCSCELL\0"; // first bytes of every saved cell
 /// Version of the saved state: increase it with every change of the fields of a cell.
 const VERSION: u32 = 5;
-/// Bytes before the state.
-const HEADER: usize = 28;
+const HEADER: usize = 28; // bytes before the state
 
 #[derive(Debug, thiserror::Error)]
 #[error("the state of the cell cannot be written: {0}")]
 pub struct SaveError(#[from] postcard::Error);
 
-/// Errors of restoring a cell from bytes.
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub enum RestoreError {
-    /// The bytes do not begin with the magic number.
     #[error("this is not a saved cell: it does not begin with RCSCELL")]
     Foreign,
-    /// The bytes were written in another version of the format.
     #[error("this cell was saved in version {found} of the format, expected version {VERSION}")]
     Version { found: u32 },
     /// The number of bytes differs from that in the header.
     #[error("a saved cell of {expected} bytes was expected, found {found}")]
     Length {
-        /// Number of bytes in the header; if the header is incomplete, its own length.
-        expected: u64,
-        /// Number of bytes found.
-        found: u64,
+        expected: u64, // number of bytes in the header; if the header is incomplete, its own length
+        found: u64,    // number of bytes found
     },
-    /// The digest does not match: some bytes have changed.
     #[error("the saved cell is damaged: its digest is {found:016x}, expected {expected:016x}")]
     Damaged {
         expected: u64,
-        /// Digest of the bytes.
-        found: u64,
+        found: u64, // digest of the bytes
     },
     /// The bytes are undamaged but cannot be decoded: their writer should have increased the version.
     #[error("the saved cell cannot be read: {0}")]
     Unreadable(#[from] postcard::Error),
-    /// The saved cell was built from another description.
     #[error("the cell was saved from another description than the one given")]
     OtherDescription,
 }
 
 impl Cell {
-    /// The whole state as bytes, for [`Cell::restore`].
-    ///
-    /// # Errors
-    /// [`SaveError`] if the format cannot hold the state.
+    /// The whole state as bytes, for [`Cell::restore`]. Fails with [`SaveError`] if the format cannot hold the state.
     pub fn save(&self) -> Result<Vec<u8>, SaveError> {
         let mut bytes = Vec::with_capacity(256 * 1024);
         bytes.extend([0; HEADER]);
@@ -74,10 +60,8 @@ impl Cell {
         Ok(bytes)
     }
 
-    /// Restore a saved cell, built from `description`.
-    ///
-    /// # Errors
-    /// [`RestoreError`] if the bytes are not a complete, undamaged cell of this description.
+    /// Restore a saved cell, built from `description`. Fails with [`RestoreError`] if the bytes are not a complete,
+    /// undamaged cell of this description.
     pub fn restore(description: &CellDescription, bytes: &[u8]) -> Result<Self, RestoreError> {
         let mut cell: Self = postcard::from_bytes(state_in(bytes)?)?;
         // A pedestal that a fault has moved from its mark is restored at that place.
@@ -90,11 +74,7 @@ impl Cell {
         Ok(cell)
     }
 
-    /// Digest of all positions, velocities and device states of the cell: two runs have the same digest while they are
-    /// in the same state.
-    ///
-    /// # Panics
-    /// If a device cannot be serialised, which is a fault of this crate.
+    /// Digest of all positions, velocities and device states: equal while two runs are in the same state.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut bytes = Vec::with_capacity(8 * 1024);
@@ -117,7 +97,6 @@ impl Cell {
     }
 }
 
-/// The state after a valid header.
 fn state_in(bytes: &[u8]) -> Result<&[u8], RestoreError> {
     let known = MAGIC.len().min(bytes.len());
     if bytes[..known] != MAGIC[..known] {
@@ -145,7 +124,6 @@ fn state_in(bytes: &[u8]) -> Result<&[u8], RestoreError> {
     Ok(rest)
 }
 
-/// The next `N` bytes.
 fn take<const N: usize>(rest: &mut &[u8]) -> Option<[u8; N]> {
     let (here, after) = rest.split_first_chunk::<N>()?;
     *rest = after;

@@ -22,15 +22,13 @@ use crate::{
 const ARM_IN_VIEW: [&str; 2] = ["upper_arm", "forearm"];
 
 impl Cell {
-    /// Let another process analyse the camera's pictures. The caller takes them from [`Cell::picture`], and
-    /// passes the answers to [`Cell::hear_vision`].
+    /// Let another process analyse the pictures: [`Cell::picture`] gives them, [`Cell::hear_vision`] takes the answers.
     #[must_use]
     pub fn with_vision_elsewhere(mut self) -> Self {
         self.vision_elsewhere = true;
         self
     }
 
-    /// Draw the noise of the sensors and the random places of parts from another seed from now on.
     pub fn reseed(&mut self, seed: u64) {
         self.gripper_noise = Noise::new(seed, Stream::Gripper);
         self.pedestal_noise = Noise::new(seed, Stream::Pedestal);
@@ -40,7 +38,6 @@ impl Cell {
         self.analysis.reseed(seed);
     }
 
-    /// Take a picture if there is a new request.
     pub(super) fn look(&mut self, outputs: &DeviceOutputs) {
         if self.vision_elsewhere || !self.analysis.wants_picture(&outputs.vision) {
             return;
@@ -50,7 +47,6 @@ impl Cell {
         self.analysis.expose(&outputs.vision, &seen, expected);
     }
 
-    /// The parts now visible to the camera.
     #[must_use]
     pub fn picture(&self) -> Vec<Subject> {
         if self.faults.camera_blind() {
@@ -66,8 +62,7 @@ impl Cell {
         self.faults.vision(&mut self.inputs);
     }
 
-    /// The visible points of each part for a camera at a frame (world, in): those in the field of view that are not
-    /// hidden.
+    /// The visible points of each part for a camera at a frame (world, in).
     fn subjects(&self, camera: &Frame) -> Vec<Subject> {
         let lens = to_pose(camera).translation;
         let arm: Vec<_> =
@@ -117,8 +112,8 @@ impl Cell {
         inputs
     }
 
-    /// Sensors of the mated gripper. All three grippers have their potentiometer on the same connections; only the
-    /// parts gripper has beam breaks and strain gages, only the tool gripper has force gages (III.3.6 to III.3.8).
+    /// Sensors of the mated gripper. Only the parts gripper has beam breaks and strain gages, only the tool gripper has
+    /// force gages (III.3.6 to III.3.8).
     fn sense_gripper(&mut self) -> (GripSensors, ForceSensor) {
         let Some(hand) = self.changer.mated() else { return Default::default() };
         let beams = if hand == Hand::Parts { self.broken_beams() } else { 0 };

@@ -1,13 +1,8 @@
 //! Length of a step of the simulation.
 //!
-//! The description sets the number of sub-steps in a tick, which springs, contacts and moving air require. Most
-//! of the time none of these is active. The servos of the arm always move in sub-steps; the physics takes
-//! several at once while
-//!
-//! * only kinematic bodies move: a whole tick;
-//! * parts hang free in the motionless fingers of robot or pedestal, one hand each: a quarter of a tick.
-//!
-//! The physics takes single sub-steps while any body is nearer to the robot's hand than [`NEAR`].
+//! The description sets the number of sub-steps per tick. The arm always moves in sub-steps. The physics takes a whole
+//! tick at once while only kinematic bodies move, a quarter while parts hang free in motionless fingers, and single
+//! sub-steps while any body is nearer to the hand than [`NEAR`].
 
 use geometry::frame::Frame;
 use interfaces::device::DeviceOutputs;
@@ -24,31 +19,22 @@ use crate::{
     hand::Hand,
 };
 
-/// Distance to hand, fingers or held part, m, below which contact is possible in the next sub-step; twice the travel of
-/// the hand in this one is added.
+/// Distance to hand, fingers or held part, m, below which contact is possible in the next sub-step.
 const NEAR: Real = 0.004;
-/// Least distance of the fingers from all bodies in a long step, m.
-const SLACK: Real = 0.001;
-/// Distance from hand, fingers and held part beyond which no body is within reach in a tick, m. The shipped arm
-/// moves by less with all joints at their greatest speeds.
+const SLACK: Real = 0.001; // least distance of the fingers from all bodies in a long step, m
+/// Distance from hand, fingers and held part beyond which no body is within reach in a tick, m.
 const REACH: Real = 0.5;
 
-/// Data that determine the steps of a tick.
 struct Stride {
-    /// Greatest number of sub-steps that the physics takes at once.
-    most: u32,
-    /// Bounding boxes of all bodies that the hand may approach.
-    around: Vec<Aabb>,
-    /// Colliders of hand and held part, and their poses in the hand.
-    carried: Vec<(ColliderHandle, Pose)>,
-    /// The tool frame of the arm after the last sub-step.
-    tool: Frame,
+    most: u32,                            // greatest number of sub-steps that the physics takes at once
+    around: Vec<Aabb>,                    // bounding boxes of all bodies that the hand may approach
+    carried: Vec<(ColliderHandle, Pose)>, // colliders of hand and held part, and their poses in the hand
+    tool: Frame,                          // the tool frame of the arm after the last sub-step
     /// [`NEAR`], or more if the fingers move by more than that in a tick.
     near: Real,
 }
 
 impl Cell {
-    /// Move all bodies for one tick.
     pub(super) fn step_bodies(&mut self, outputs: &DeviceOutputs) {
         let near = self.near_arm();
         let mut stride = self.stride(outputs);
@@ -58,8 +44,7 @@ impl Cell {
         }
     }
 
-    /// Take one step of the physics of at most `left` sub-steps; returns their number. `near` are the bodies that an
-    /// arm without pressure may touch.
+    /// Take one step of at most `left` sub-steps; returns their number. `near`: what an arm without pressure may touch.
     fn step_physics(
         &mut self,
         outputs: &DeviceOutputs,
@@ -92,7 +77,6 @@ impl Cell {
         taken
     }
 
-    /// The steps of a tick for these commands.
     fn stride(&self, outputs: &DeviceOutputs) -> Stride {
         let most = self.most_at_once(outputs);
         let hand = self.changer.mated().filter(|_| most > 1);
@@ -103,7 +87,6 @@ impl Cell {
         Stride { most, around, carried, tool: self.t3.arm().tool(), near }
     }
 
-    /// Number of sub-steps that the physics may take at once if the hand stays clear of all bodies.
     fn most_at_once(&self, outputs: &DeviceOutputs) -> u32 {
         let whole = self.description.physics.substeps;
         let always_small = !self.description.physics.long_steps;
@@ -128,8 +111,8 @@ impl Cell {
             || !self.changer.rests()
     }
 
-    /// True if a body is a part in the motionless fingers of one hand that touches no other body, or a finger
-    /// of the pedestal's hand around such a part. Its springs always move it.
+    /// True for a part in the motionless fingers of one hand that touches no other body, and the pedestal's fingers
+    /// around it.
     fn hangs_free(&self, body: RigidBodyHandle, outputs: &DeviceOutputs) -> bool {
         self.changer.mated().into_iter().chain([Hand::Pedestal]).any(|hand| {
             let gripper = self.hand(hand);
@@ -146,7 +129,6 @@ impl Cell {
         })
     }
 
-    /// Colliders of a hand and of the part that it holds, and their poses in the hand.
     fn carried_by(&self, hand: Hand) -> Vec<(ColliderHandle, Pose)> {
         let gripper = self.hand(hand);
         let held = gripper.hold.as_ref().map(|(index, _)| self.parts[*index].collider);
@@ -158,7 +140,6 @@ impl Cell {
             .collect()
     }
 
-    /// Bounding boxes of all bodies that the hand and its part may reach in a tick.
     fn around(&self, carried: &[(ColliderHandle, Pose)]) -> Vec<Aabb> {
         let colliders = &self.world.colliders;
         let own = carried.iter().map(|(own, _)| colliders[*own].compute_aabb());
@@ -171,7 +152,6 @@ impl Cell {
         others.map(|(_, collider)| collider.compute_aabb()).filter(|other| other.intersects(&reach)).collect()
     }
 
-    /// True if no body is near the hand, which the arm has moved in a sub-step.
     fn is_clear(&self, stride: &mut Stride) -> bool {
         let tool = self.t3.arm().tool();
         let travel = metres((tool.position - stride.tool.position).norm());

@@ -1,4 +1,4 @@
-//! The true state of the cell, for a judge of the controller's reports. It is independent of sensors and faults.
+//! The true state of the cell, independent of sensors and faults, to judge the controller's reports.
 
 use geometry::frame::{Frame, Vector as Inches};
 
@@ -14,17 +14,14 @@ use crate::{
 /// Fingers slower than this are at rest, in/s. Those that press a part follow its sway.
 const STILL: f64 = 0.05;
 
-/// Devices that hold a part. During a handover there are two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Holders {
     pub robot: bool,
-    /// The hand of the Active Pedestal.
     pub pedestal: bool,
     pub vise: bool,
     pub drum: bool,
 }
 
-/// State of the locking ring of the quick change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RingState {
     Locked,
@@ -41,7 +38,6 @@ impl Cell {
         self.parts.get(index).map(|part| part.id)
     }
 
-    /// Number that the next part of the cell will get.
     #[must_use]
     pub const fn next_part_number(&self) -> u32 {
         self.next_part
@@ -71,7 +67,6 @@ impl Cell {
         self.drum.entering(&self.part_frame(id)?)
     }
 
-    /// The locking ring of the quick change.
     #[must_use]
     pub fn ring(&self) -> RingState {
         self.changer.ring_state()
@@ -90,22 +85,18 @@ impl Cell {
         }
     }
 
-    /// True if the fingers of the robot's gripper move.
     #[must_use]
     pub fn fingers_move(&self) -> bool {
         self.changer.mated().is_some_and(|hand| self.hand(hand).air.speed().abs() > STILL)
     }
 
-    /// True if the hand or the rotary table of the pedestal moves.
     #[must_use]
     pub fn pedestal_moves(&self) -> bool {
         self.pedestal.table.moving() || self.pedestal.hand.air.speed().abs() > STILL
     }
 
-    /// Remove a part that is free or only in the tool drum, whose fingers then stay closed.
-    ///
-    /// # Errors
-    /// [`WorkstationError`]. The state is then unchanged.
+    /// Remove a part that is free or only in the tool drum, whose fingers then stay closed. On error, the state is
+    /// unchanged.
     pub fn take_part(&mut self, id: u32) -> Result<(), WorkstationError> {
         if self.index_of(id).is_some_and(|index| self.is_in_drum(index)) {
             self.free_drum();
@@ -113,11 +104,7 @@ impl Cell {
         self.workstation(&WorkstationAction::Remove { id })
     }
 
-    /// Move a free part to a frame, world, in.
-    ///
-    /// # Errors
-    /// [`WorkstationError`] if the part does not exist or is held, or the place is occupied. The state is then
-    /// unchanged.
+    /// Move a free part to a frame, world, in. On error, the state is unchanged.
     pub fn move_part(&mut self, id: u32, frame: &Frame) -> Result<(), WorkstationError> {
         let index = self.index_of(id).ok_or(WorkstationError::NoSuchPart { id })?;
         if self.is_had(index) {
@@ -140,8 +127,7 @@ impl Cell {
 }
 
 impl CellDescription {
-    /// All places of a kind of part in nests and trays: location, sector (0 for none), and the frame, world, in, of a
-    /// part that lies there as delivered.
+    /// All places of a kind of part in nests and trays: location, sector (0 for none), frame (world, in).
     #[must_use]
     pub fn places_of(&self, kind: &PartType) -> Vec<(String, u16, Frame)> {
         let nests: Vec<_> = self.nest.iter().filter(|nest| nest.takes(kind)).collect();

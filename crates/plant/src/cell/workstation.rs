@@ -8,7 +8,6 @@ use crate::{
     description::Tolerance, pedestal::TableRefusal, resolver_box::ResolverRefusal, t3::Refusal, vise::Jaws,
 };
 
-/// Place of a new part in a sector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Placement {
     /// At an offset from the centre of the sector.
@@ -24,21 +23,16 @@ pub enum Placement {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum WorkstationAction {
-    /// Put a part into a sector of a tray.
     Place {
-        /// Name of a part of the description.
-        part: String,
+        part: String, // name of a part of the description
         unit: String,
-        /// Sector, from 1.
-        sector: u16,
+        sector: u16, // Sector, from 1
         placement: Placement,
     },
     Put {
-        /// Name of a part of the description.
-        part: String,
+        part: String, // name of a part of the description
         frame: Frame,
     },
-    /// Remove the part with a number.
     Remove {
         id: u32,
     },
@@ -52,82 +46,60 @@ pub enum WorkstationAction {
     },
     /// Machine the part that is clamped in the vise or in a nest.
     Machine {
-        /// The required part.
-        from: String,
+        from: String, // the required part
         to: String,
-        /// Name of the location of the vise or the nest.
-        location: String,
+        location: String, // name of the location of the vise or the nest
     },
-    /// Close the fingers of the tool drum.
     DrumGrip,
-    /// Open the fingers of the tool drum.
     DrumRelease,
     /// Put a tool into its place in the drum, whose fingers then hold it.
     DrumTool {
-        /// Name of a part of the description.
-        part: String,
+        part: String, // name of a part of the description
     },
     Joystick(BoxAction),
-    /// Operate the T3 controller, or an emergency stop.
     T3(Key),
-    /// Operate the panel of the rotary table's controller.
     Table(TableKey),
     Resolvers(ResolverKey),
 }
 
-/// Reasons for which the workstation refuses an action.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WorkstationError {
-    /// The description has no part of that name.
     #[error("no part named {name}; the cell description has {}", list(.known))]
     UnknownPart { name: String, known: Vec<String> },
-    /// The description has no unit of that name.
     #[error("no unit named {name}; the cell description has {}", list(.known))]
     UnknownUnit { name: String, known: Vec<String> },
-    /// The unit has no such sector.
     #[error("{unit} has sectors 1 to {sectors} in the cell description, not {sector}")]
     UnknownSector {
         unit: String,
         sector: u16,
-        /// Number of sectors of the unit.
-        sectors: usize,
+        sectors: usize, // number of sectors of the unit
     },
-    /// The part requires a nest, which is missing.
     #[error("no place for {part} in sector {sector} of {unit}; the cell description has {}", places(.known))]
     NoNest {
         part: String,
         unit: String,
         sector: u16,
-        /// Locations and sectors of its nests; 0 for a nest without a sector.
-        known: Vec<(String, u16)>,
+        known: Vec<(String, u16)>, // locations and sectors of its nests; 0 for a nest without a sector
     },
-    /// The vise is at another location.
     #[error("there is no vise at {location}; the cell description has one at {known}")]
     NoVise { location: String, known: String },
-    /// The vise has no such program.
     #[error("the vise has no program {name}; the cell description has {}", list(.known))]
     UnknownProgram { name: String, known: Vec<String> },
-    /// The part is not a tool for the drum.
     #[error("{name} is no tool; the cell description has {}", list(.known))]
     NoTool { name: String, known: Vec<String> },
     #[error("nothing can be machined at {location}; the cell description has machines at {}", list(.known))]
     NoMachine {
         location: String,
-        /// All locations with a machine.
-        known: Vec<String>,
+        known: Vec<String>, // all locations with a machine
     },
-    /// No gripper has this end effector id.
     #[error("no gripper has the end effector id {id}; the grippers have 1 to 3")]
     NoSuchGripper { id: u8 },
-    /// No holster has this number.
     #[error("no holster has the number {number}; the holsters have 0 to 2")]
     NoSuchHolster { number: usize },
     #[error("{part} cannot be put there: {by} is in the way")]
     Occupied { part: String, by: String },
-    /// No part has this number.
     #[error("there is no part number {id} in the cell")]
     NoSuchPart { id: u32 },
-    /// A held part cannot be removed.
     #[error("{part} is held and cannot be taken away")]
     Held { part: String },
     /// A part that the robot still holds cannot be machined in a nest.
@@ -137,7 +109,6 @@ pub enum WorkstationError {
     Busy,
     #[error("{expected} is to be machined, but nothing is clamped in the vise")]
     NotClamped { expected: String },
-    /// The nest is empty.
     #[error("{expected} is to be machined, but nothing is at {location}")]
     NothingThere { expected: String, location: String },
     #[error("{expected} is to be machined, but {found} is there")]
@@ -146,51 +117,38 @@ pub enum WorkstationError {
     #[error("the drum cannot grip {tool}: it is {distance:.3} in and {degrees:.2} degrees from its place")]
     NotInPlace {
         tool: String,
-        /// Distance of its centre from its place, in.
-        distance: f64,
-        /// Angle of its axis to that of its place, degrees.
-        degrees: f64,
+        distance: f64, // distance of its centre from its place, in
+        degrees: f64,  // angle of its axis to that of its place, degrees
     },
-    /// The drum has no tool for its fingers.
     #[error("the drum has nothing to grip: no tool is in its place")]
     NothingToGrip,
-    /// The front side is already machined.
     #[error(
         "{part} is to be machined on its other side, but the one in front was machined before: turn it round first"
     )]
     SameSide { part: String },
-    /// The part is too far from its seat.
     #[error(
         "{part} is {distance:.3} in and {degrees:.2} degrees from its seat; {} and {} degrees are allowed",
         Length(.allowed.inches), .allowed.degrees
     )]
     NotSeated {
         part: String,
-        /// Distance of its centre from the seat, in.
-        distance: f64,
-        /// Angle of the part to the seat, degrees.
-        degrees: f64,
+        distance: f64, // distance of its centre from the seat, in
+        degrees: f64,  // angle of the part to the seat, degrees
         allowed: Tolerance,
     },
-    /// The T3 controller refuses the key in its present state.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// The rotary table's controller refuses the key in its present state.
     #[error(transparent)]
     TableRefused(#[from] TableRefusal),
-    /// The resolver electronics does not react.
     #[error(transparent)]
     ResolversRefused(#[from] ResolverRefusal),
-    /// The next part is larger than the blank.
     #[error("{to} does not fit into {from}")]
     TooLarge { from: String, to: String },
 }
 
 impl Cell {
-    /// Begin an action. A jaw of the vise then moves tick by tick; see [`Cell::workstation_busy`].
-    ///
-    /// # Errors
-    /// [`WorkstationError`]. The state is then unchanged.
+    /// Begin an action. A jaw of the vise then moves tick by tick; see [`Cell::workstation_busy`]. On error, the state
+    /// is unchanged.
     pub fn workstation(&mut self, action: &WorkstationAction) -> Result<(), WorkstationError> {
         self.description.admits(action)?;
         match action {
@@ -233,14 +191,12 @@ impl Cell {
         self.pedestal.table.release_keys();
     }
 
-    /// True while a key of the rotary table's panel moves it.
     #[must_use]
     pub fn is_table_led_by_hand(&self) -> bool {
         self.pedestal.table.is_led_by_hand()
     }
 
-    /// True while the vise moves, a control of the joystick box is held down, or the T3 controller or that of
-    /// the rotary table executes the action of a key.
+    /// True while the vise moves, a control of the joystick box is held down, or a key's action is in progress.
     #[must_use]
     pub fn workstation_busy(&self) -> bool {
         self.vise.moving() || self.joystick.busy() || self.t3.busy() || self.pedestal.table.is_led_by_hand()
@@ -254,7 +210,6 @@ impl Cell {
         }
         let part = self.parts.remove(index);
         self.world.remove_body(part.body);
-        // Holders know their part by its index in the list.
         self.renumber(|held| if held > index { held - 1 } else { held });
         Ok(())
     }
@@ -282,12 +237,10 @@ impl Cell {
     }
 }
 
-/// The names as a comma-separated list.
 fn list(names: &[String]) -> String {
     names.join(", ")
 }
 
-/// The places as a comma-separated list.
 fn places(places: &[(String, u16)]) -> String {
     let place = |(location, sector): &(String, u16)| match sector {
         0 => location.clone(),

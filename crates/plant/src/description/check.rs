@@ -1,6 +1,4 @@
-//! Checks of the numbers and names of a cell description.
-//!
-//! Every check names its entry by its path (`gripper.parts.body[0]`), so that the message can underline it in the text.
+//! Checks of the numbers and names. Each names its entry by its path, so that the message can underline it.
 
 mod collector;
 mod parts;
@@ -20,10 +18,7 @@ use self::collector::Check;
 use super::{CellDescription, DescriptionError, Gripper, ViseProgram};
 
 impl CellDescription {
-    /// Check all numbers and names.
-    ///
-    /// # Errors
-    /// [`DescriptionError::Mistakes`] with all mistakes, without their places.
+    /// Check all numbers and names. Fails with [`DescriptionError::Mistakes`] with all mistakes, without their places.
     pub fn validate(&self) -> Result<(), DescriptionError> {
         let mut problems = Problems::default();
         problems.extend(self.problems(&StandIns::default()).0);

@@ -1,8 +1,5 @@
-//! Permitted contacts, and the commands during which they are permitted: the entries `[[contact]]` of a cell
-//! description.
-//!
-//! Every body that can collide has a name and a [`Kind`]. An entry names movers and obstacles by names, by the groups
-//! of their kinds, or by patterns with one `*`; `*` alone matches all. A contact that no entry permits is a collision.
+//! The entries `[[contact]]` of a cell description: permitted contacts. An entry names movers and obstacles by names,
+//! by the groups of their kinds, or by patterns with one `*`. Any other contact is a collision.
 
 use std::fmt;
 
@@ -11,7 +8,6 @@ use serde::{Deserialize, Serialize};
 
 use super::CellDescription;
 
-/// The kinds of bodies that can collide.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Kind {
     /// A link of the arm: `turret`, `upper_arm`, `forearm`, `wrist`.
@@ -20,25 +16,20 @@ pub enum Kind {
     Gripper,
     /// A finger of the gripper on the robot: `left_finger`, `right_finger`.
     Finger,
-    /// The part that the robot holds, by its name.
     HeldPart,
-    /// A box of the description, by its name.
     Fixture,
     /// Floor or wall of a tray: `UNIT_1_floor`, `UNIT_1_near_wall` and so on.
     Tray,
     /// A body of the vise: `vise_body`, `fixed_jaw`, `movable_jaw`.
     Vise,
-    /// Cheek, lip or foot of a holster.
     Holster,
     /// A gripper that is not on the robot: `parts_gripper`, `v_gripper`, `tool_gripper`.
     StoredGripper,
-    /// A box of the strike plate of the tool drum, by its name.
     Drum,
     /// The hand of the pedestal without its fingers: `pedestal_hand`.
     PedestalHand,
     /// A finger of the pedestal's hand: `pedestal_left_finger`, `pedestal_right_finger`.
     PedestalFinger,
-    /// A part that the robot does not hold, by its name.
     Part,
 }
 
@@ -59,7 +50,6 @@ impl Kind {
         Self::Part,
     ];
 
-    /// The names of the groups that contain it.
     #[must_use]
     pub const fn groups(self) -> &'static [&'static str] {
         match self {
@@ -79,13 +69,11 @@ impl Kind {
         }
     }
 
-    /// True if it moves with the arm.
     #[must_use]
     pub const fn is_mover(self) -> bool {
         matches!(self, Self::Arm | Self::Gripper | Self::Finger | Self::HeldPart)
     }
 
-    /// True if the arm can collide with it.
     #[must_use]
     pub const fn is_obstacle(self) -> bool {
         !matches!(self, Self::Gripper | Self::Finger | Self::HeldPart)
@@ -104,13 +92,11 @@ impl Kind {
 pub struct Pattern(pub String);
 
 impl Pattern {
-    /// True if it matches a body of this name and kind.
     #[must_use]
     pub fn matches(&self, name: &str, kind: Kind) -> bool {
         self.means_kind(kind) || self.means_name(name)
     }
 
-    /// True if it matches every body of a kind.
     #[must_use]
     pub fn means_kind(&self, kind: Kind) -> bool {
         self.0 == "*" || kind.groups().contains(&self.0.as_str())
@@ -137,7 +123,6 @@ impl fmt::Display for Pattern {
 #[serde(deny_unknown_fields)]
 pub struct Permit {
     pub mover: Vec<Pattern>,
-    /// The obstacles that they may touch.
     pub obstacle: Vec<Pattern>,
     /// Commands of E-move or Subtask during which it holds; always if the list is empty.
     #[serde(default)]
@@ -163,7 +148,6 @@ impl Permit {
     }
 }
 
-/// The permits of a cell description.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct Permits(pub Vec<Permit>);

@@ -7,15 +7,12 @@ use super::Robot;
 /// Drives of the joints: the servos under pressure, the hydraulics for the arm without pressure.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Actuators {
-    /// First-order lag of the joint servos, s.
-    pub lag_s: f64,
-    /// Greatest speed of each joint under pressure, degrees/s.
-    pub speeds: [f64; 6],
+    pub lag_s: f64,       // First-order lag of the joint servos, s
+    pub speeds: [f64; 6], // greatest speed of each joint under pressure, degrees/s
     pub hydraulics: Hydraulics,
 }
 
-/// The hydraulics, and the weights that they carry. All values are ASSUMED, such that the arm behaves as III.6 and
-/// IV.3.3 describe.
+/// The hydraulics, and the weights that they carry. All values are ASSUMED, to agree with III.6 and IV.3.3.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Hydraulics {
@@ -23,19 +20,13 @@ pub struct Hydraulics {
     pub pump_delay_s: f64,
     /// Speed at which a joint without pressure sinks under its load at HOME, degrees/s.
     pub droop_rate: f64,
-    /// Angle by which the shoulder sinks until the shot pin stops it, degrees.
-    pub shot_pin: f64,
-    /// Greatest distance of a servo's command from its joint, degrees: the command follows a sagging joint, which jumps
-    /// back by at most this angle when the pressure returns.
+    pub shot_pin: f64, // angle by which the shoulder sinks until the shot pin stops it, degrees
+    /// Greatest distance of a servo's command from its joint, degrees: the command follows a sagging joint.
     pub following_error: f64,
-    /// Weight of the upper arm, lb.
-    pub upper_arm_weight: f64,
-    /// Weight of the forearm, lb.
-    pub forearm_weight: f64,
-    /// Weight of the wrist, lb.
-    pub wrist_weight: f64,
-    /// Weight of quick change and gripper for which the hydraulics are designed, lb.
-    pub tool_weight: f64,
+    pub upper_arm_weight: f64, // lb
+    pub forearm_weight: f64,   // lb
+    pub wrist_weight: f64,     // lb
+    pub tool_weight: f64,      // weight of quick change and gripper for which the hydraulics are designed, lb
 }
 
 impl Default for Hydraulics {

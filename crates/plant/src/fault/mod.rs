@@ -1,11 +1,7 @@
 //! Faults in the cell, described in a file: sensors, valves, air, wrong or misplaced parts.
 //!
-//! A [`FaultPlan`] is a seed and some [`Fault`]s; an [`Injector`] applies it tick by tick. A fault changes data
-//! between the cell and the controller (a sensor's word, a valve's command), or the delivery of a part. The
-//! rest of the cell behaves normally, and the controller must detect the fault.
-//!
-//! [`text`] describes the kinds of faults and their notation. Faults of the line to the robot controller, which may be
-//! in the same file, are in [`depc::fault`].
+//! A [`FaultPlan`] is a seed and [`Fault`]s; an [`Injector`] applies it tick by tick to the words between cell and
+//! controller, and to deliveries. [`text`] describes the notation; [`depc::fault`] the faults of the line.
 
 mod inject;
 pub mod text;
@@ -25,20 +21,17 @@ use crate::description::CellDescription;
 
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct FaultPlan {
-    /// Seed of the random numbers, combined with the seed of the run.
-    pub seed: u64,
+    pub seed: u64, // combined with the seed of the run
     pub faults: Vec<Fault>,
 }
 
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Fault {
-    /// Its number in the file, from 1.
     pub number: usize,
     pub what: What,
     pub when: When,
 }
 
-/// The ticks in which a fault is present.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct When {
     /// First tick of the window; 0 is before the first tick of the run.
@@ -55,7 +48,6 @@ impl When {
     /// All ticks of a run.
     pub const ALWAYS: Self = Self { from: 0, until: u64::MAX, rate: None, ticks: 1 };
 
-    /// True if the tick is in the window.
     #[must_use]
     pub const fn covers(&self, tick: u64) -> bool {
         self.from <= tick && tick < self.until
@@ -64,16 +56,12 @@ impl When {
 
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum What {
-    /// A sensor shows a wrong value.
     Sensor(#[serde(with = "crate::named")] Input, Disorder),
-    /// A valve is stuck open (true) or closed.
     Valve(#[serde(with = "crate::named")] Output, bool),
     AirLost,
     /// The hydraulics of the robot have failed, and can be switched on again only after the end of the fault (III.6).
     HydraulicsLost,
-    /// The locking ring of the quick change does not move.
     RingStuck,
-    /// The jaw of the vise does not move.
     JawStuck,
     CameraBlind,
     /// A device of the field I/O has no connection.
@@ -82,12 +70,9 @@ pub enum What {
     Delivery(Option<String>, Mishap),
     /// The stand of the pedestal is not on its mark on the floor (II.1.2.3): inches in x and y, degrees.
     PedestalMoved {
-        /// Along world X, in.
-        x: f64,
-        /// Along world Y, in.
-        y: f64,
-        /// About its own axis, degrees, positive to the left.
-        angle: f64,
+        x: f64,     // along world X, in
+        y: f64,     // along world Y, in
+        angle: f64, // about its own axis, degrees, positive to the left
     },
 }
 
@@ -137,7 +122,6 @@ impl FaultPlan {
     }
 }
 
-/// The description with the displacements of the given faults.
 fn displaced<'f>(faults: impl Iterator<Item = &'f Fault>, description: &CellDescription) -> CellDescription {
     let mut cell = description.clone();
     for fault in faults {

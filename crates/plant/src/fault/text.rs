@@ -32,12 +32,10 @@
 //! direction = "to-host"           # to-host, to-controller; default: both
 //! rate = 0.001                    # probability for each byte (drop flip duplicate delay) or each tick (others)
 //! ```
-//!
-//! A fault of the line can also have `byte = 0x06` (insert); before the faults the file can have `most_per_tick`, the
-//! greatest number of line faults per tick and direction. Other faults of the cell: `stuck` with `device = "lock-ring"`
-//! or `"vise-jaw"`, `air-lost`, `hydraulics-lost`, `camera-blind`, `pedestal-moved`, and `field-cut` with the
-//! `device` of a mapping of field I/O that has no connection. A fault without a time is always
-//! present; a fault of the line needs a rate, a tick or a range of ticks.
+//! A fault of the line can also have `byte = 0x06` (insert); the file can have `most_per_tick`, the greatest number of
+//! line faults per tick and direction. Other faults of the cell: `stuck` with `device = "lock-ring"` or `"vise-jaw"`,
+//! `air-lost`, `hydraulics-lost`, `camera-blind`, `pedestal-moved`, and `field-cut` with a `device` of field I/O. A
+//! fault without a time is always present; a fault of the line needs a rate, a tick or a range of ticks.
 //!
 //! Parsing reports all errors of a file at once.
 
@@ -65,26 +63,18 @@ const KIND: FileKind = FileKind {
     magnitudes: [1e-6, 1e5],
 };
 
-/// The contents of a fault file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FaultFile {
-    /// Faults of the line to the robot controller, if any.
     pub line: Option<Plan>,
     pub cell: FaultPlan,
 }
 
 /// Parses a fault file for a cell.
-///
-/// # Errors
-/// All errors in the file.
 pub fn parse(source: &Source, cell: &CellDescription) -> Result<FaultFile, Diagnostics> {
     sheet(source, Some(cell))
 }
 
-/// Parses a file with faults of the line only.
-///
-/// # Errors
-/// All errors in the file, including faults of the cell.
+/// Parses a file with faults of the line only. Errors: all errors in the file, including faults of the cell.
 pub fn parse_line(source: &Source) -> Result<Plan, Diagnostics> {
     let read = sheet(source, None)?;
     Ok(read.line.unwrap_or_else(|| Plan::new(read.cell.seed)))
@@ -129,7 +119,6 @@ struct Form {
 }
 
 impl Form {
-    /// The keys that are present, except `kind`.
     fn keys(&self) -> impl Iterator<Item = &'static str> {
         let there = [
             ("direction", self.direction.is_some()),
@@ -155,7 +144,6 @@ impl Form {
     }
 }
 
-/// The value at which something is stuck.
 #[derive(Clone, Debug)]
 enum Value {
     Count(i64),
@@ -193,22 +181,17 @@ impl<'de> Deserialize<'de> for Value {
     }
 }
 
-/// A fault entry of a file.
 struct Entry<'f> {
     form: &'f Form,
-    /// Its path: `fault[0]`.
-    path: String,
-    /// Its number in the file, from 1.
-    number: usize,
+    path: String,  // its path: `fault[0]`
+    number: usize, // its number in the file, from 1
 }
 
 impl Entry<'_> {
-    /// The problem of an unexpected value.
     fn unlike(&self, key: &str, expected: impl fmt::Display, found: impl fmt::Display) -> Box<Problem> {
         Box::new(Problem::unlike(KIND.value, &join(&self.path, key), expected, found))
     }
 
-    /// The problem of an unknown name.
     fn unknown(&self, key: &str, found: &str, known: &[&str]) -> Box<Problem> {
         let expected = format!("one of {}", known.join(", "));
         let problem = Problem::unlike("fault.name", &join(&self.path, key), expected, format!("{found:?}"));
@@ -264,7 +247,6 @@ fn sheet(source: &Source, cell: Option<&CellDescription>) -> Result<FaultFile, D
     Ok(file)
 }
 
-/// Add an entry to the file, or return its error.
 fn take(
     entry: &Entry<'_>,
     cell: Option<&CellDescription>,
@@ -300,7 +282,6 @@ fn take(
     match cell::fault(entry, kind, cell) {
         Ok(fault) => file.cell.faults.push(fault),
         Err(problem) if problems.is_empty() => problems.push(*problem),
-        // A key that the kind does not have may be a misspelling of the missing key.
         Err(_) => {}
     }
     problems

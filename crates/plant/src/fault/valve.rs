@@ -2,9 +2,8 @@
 
 use interfaces::device::{DeviceOutputs, valve};
 
-/// Remove the air supply. Nothing flows in, and air trapped by the closed valves of a hand stays. The check
-/// valves of v-gripper and tool gripper, whose air stays on while they hold, also keep their air (ASSUMED).
-/// Venting needs no supply.
+/// Remove the air supply: nothing flows in; closed valves and check valves keep their air (ASSUMED). Venting still
+/// works.
 pub const fn cut_air(outputs: &mut DeviceOutputs) {
     outputs.grip.bits &= valve::VENT;
     outputs.pedestal_hand.bits &= valve::VENT;

@@ -21,10 +21,8 @@ const NEAR: f64 = 12.0;
 #[derive(Clone, Debug)]
 pub(super) struct Press {
     pair: (String, String),
-    /// Unit vector out of the face, world.
-    away: Inches,
-    /// Depth at the first contact, in.
-    depth: f64,
+    away: Inches, // unit vector out of the face, world
+    depth: f64,   // depth at the first contact, in
     tool: Inches,
 }
 
@@ -40,7 +38,6 @@ impl Press {
 }
 
 impl Ideal {
-    /// The drum fixes the tool in it, or releases it.
     pub(super) fn work_drum(&mut self) {
         let Some((pocketed, entering)) = self.tool_at_drum() else {
             self.drum.tool = None;
@@ -79,16 +76,11 @@ impl Ideal {
         }
     }
 
-    /// True if a part is fixed in the drum.
     pub(super) fn is_in_drum(&self, part: usize) -> bool {
         self.drum.tool.is_some_and(|pocketed| pocketed.part == part && pocketed.fast)
     }
 
-    /// Close the fingers of the drum on the tool that is in its place, or open them.
-    ///
-    /// # Errors
-    /// [`WorkstationError::NothingToGrip`] if no tool is there, [`WorkstationError::NotInPlace`] if a tool blocks the
-    /// fingers.
+    /// Close the fingers of the drum on the tool in its place, or open them.
     pub(super) fn set_drum_fingers(&mut self, closed: bool) -> Result<(), WorkstationError> {
         if closed {
             let (pocketed, entering) = self.tool_at_drum().ok_or(WorkstationError::NothingToGrip)?;
@@ -103,8 +95,7 @@ impl Ideal {
         Ok(())
     }
 
-    /// The load on the tool gripper at the drum, in the axes of the tool: the detents on its tool, and the strike plate
-    /// on its fingers, which yield by the stiffness of the robot.
+    /// The load on the tool gripper at the drum, in the axes of the tool: detents, and strike plate.
     pub(super) fn load_at_drum(&mut self, tool: &Frame) -> Wrench {
         let into = tool.rotation.inverse();
         let mut load = Wrench::default();

@@ -27,10 +27,8 @@ pub(super) struct Fingers {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hold {
-    /// Its index in the list of parts.
     pub(super) part: usize,
-    /// Its frame in the tool frame, in.
-    pub(super) at: Frame,
+    pub(super) at: Frame, // in
 }
 
 impl Fingers {
@@ -63,28 +61,24 @@ impl Ideal {
         }
     }
 
-    /// True if `hand` holds a part.
     pub(super) fn is_held_by(&self, hand: Hand, part: usize) -> bool {
         self.fingers(hand).hold.is_some_and(|hold| hold.part == part)
     }
 
-    /// True if the robot holds a part.
     pub(super) fn is_held(&self, part: usize) -> bool {
         ROBOT_HANDS.into_iter().any(|hand| self.is_held_by(hand, part))
     }
 
-    /// True if a device that is stronger than fingers holds a part.
     fn is_fixed(&self, part: usize) -> bool {
         self.clamped == Some(part) || self.is_in_drum(part)
     }
 
-    /// True if another device than `hand` holds a part.
     fn is_held_elsewhere(&self, hand: Hand, part: usize) -> bool {
         self.is_fixed(part) || hand.others().any(|other| self.is_held_by(other, part))
     }
 
-    /// Move the held parts with their hands. Vise and drum are stronger than a hand, the robot than the
-    /// pedestal. The weaker one loses the part when its fingers no longer reach it.
+    /// Move the held parts with their hands. Vise and drum are stronger than a hand, the robot than the pedestal; the
+    /// weaker one loses the part when its fingers no longer reach it.
     pub(super) fn carry(&mut self) {
         for hand in ROBOT_HANDS.into_iter().chain([Hand::Pedestal]) {
             let (Some(hold), Some(frame)) = (self.fingers(hand).hold, self.frame(hand)) else { continue };
@@ -121,14 +115,12 @@ impl Ideal {
         }
     }
 
-    /// Width and faces of a part between the fingers of a hand.
     fn between(&self, hand: Hand, part: usize) -> Option<Squeeze> {
         let (frame, part) = (self.frame(hand)?, self.parts.get(part)?);
         let pads = grasp::pads(hand.description(self.room.cell()));
         squeeze(&to_pose(&frame.inverse().compose(&part.frame)), &Solid::of(&part.kind), &pads)
     }
 
-    /// The widest part between the open fingers of a hand.
     fn first_between(&self, hand: Hand) -> Option<(usize, Squeeze)> {
         let tool = to_pose(&self.frame(hand)?).translation;
         let near = self.parts.iter().enumerate().filter(|(_, part)| {
@@ -155,8 +147,7 @@ impl Ideal {
         self.recover(hold.part);
     }
 
-    /// Called when a holder has released a part. A hand that holds it alone draws it to the middle; without a
-    /// holder it comes to rest.
+    /// A holder has released a part: a hand that holds it draws it to its middle; else it comes to rest.
     pub(super) fn recover(&mut self, part: usize) {
         if self.is_fixed(part) {
             return;

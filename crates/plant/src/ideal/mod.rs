@@ -1,8 +1,7 @@
 //! The ideal cell: the devices of the cell without physics, noise, delay and fault.
 //!
-//! It consists of the same parts as [`crate::Cell`] (robot controller, arm, air of the fingers, quick change,
-//! rotary table, tool drum, analysis of pictures), and of the geometry of [`Room`] instead of bodies. It shows
-//! the actions of the control processes if everything goes as planned:
+//! It has the devices of [`crate::Cell`] and the geometry of [`Room`] instead of bodies, and shows the actions of the
+//! control processes if everything goes as planned:
 //!
 //! | device | differs from the cell |
 //! |---|---|
@@ -52,8 +51,7 @@ pub struct Ideal {
     room: Arc<Room>,
     t3: T3Controller,
     changer: Changer,
-    /// In the order of [`HANDS`].
-    fingers: [Fingers; 4],
+    fingers: [Fingers; 4], // in the order of [`HANDS`]
     table: Table,
     drum: Drum,
     presses: Vec<Press>,
@@ -62,22 +60,16 @@ pub struct Ideal {
     joystick: Joystick,
     resolver_box: ResolverBox,
     parts: Vec<Placed>,
-    /// Index of the selected program of the vise.
-    program: usize,
-    /// Distance of the inner faces of the vise's jaws, in.
-    jaws: f64,
-    /// Index of the part in the closed jaws.
-    clamped: Option<usize>,
+    program: usize,         // index of the selected program of the vise
+    jaws: f64,              // distance of the inner faces of the vise's jaws, in
+    clamped: Option<usize>, // index of the part in the closed jaws
     placement_noise: Noise,
-    /// For sensors, whose noise is zero.
-    noise: Noise,
+    noise: Noise, // for sensors, whose noise is zero
     inputs: DeviceInputs,
 }
 
 impl Ideal {
-    /// The ideal cell of a room. The seed determines the random places of parts, as in [`crate::Cell::new`].
-    ///
-    /// # Errors
+    /// The ideal cell of a room. The seed determines the random places of parts, as in [`crate::Cell::new`]. Fails with
     /// [`CellError`] if the arm cannot take its start position.
     pub fn new(room: &Room, seed: u64) -> Result<Self, CellError> {
         let cell = room.cell().without_noise();
@@ -108,19 +100,16 @@ impl Ideal {
         Ok(ideal)
     }
 
-    /// The description of the cell, without noise and delay.
     #[must_use]
     pub fn description(&self) -> &CellDescription {
         self.room.cell()
     }
 
-    /// The sensor words after the last tick.
     #[must_use]
     pub const fn inputs(&self) -> DeviceInputs {
         self.inputs
     }
 
-    /// The T3 controller with its arm.
     #[must_use]
     pub const fn t3(&self) -> &T3Controller {
         &self.t3
@@ -153,13 +142,11 @@ impl Ideal {
         self.inputs
     }
 
-    /// The tool frame of the arm, in.
     fn tool(&self) -> Frame {
         self.t3.arm().tool()
     }
 
-    /// The frame of the fingertips of a hand, world, in; `None` for a gripper that is neither on a holster nor
-    /// on the robot.
+    /// The frame of the fingertips of a hand, world, in; `None` for one that is neither on a holster nor on the robot.
     fn frame(&self, hand: Hand) -> Option<Frame> {
         match hand {
             Hand::Pedestal => Some(hand_frame(&self.room.cell().pedestal, self.table.angle())),
@@ -167,12 +154,10 @@ impl Ideal {
         }
     }
 
-    /// The part in the robot's fingers.
     fn held(&self) -> Option<Hold> {
         ROBOT_HANDS.into_iter().find_map(|hand| self.fingers(hand).hold)
     }
 
-    /// The positions of all objects that a job moves.
     #[must_use]
     pub fn layout(&self) -> Layout {
         let worn = self.changer.carried();

@@ -41,7 +41,6 @@ impl CellDescription {
 }
 
 impl Ideal {
-    /// Take a picture for a new request. It shows each part in the field of view.
     pub(super) fn look(&mut self, request: &VisionRequest) {
         if !self.analysis.wants_picture(request) {
             return;
@@ -82,8 +81,7 @@ impl Ideal {
         inputs
     }
 
-    /// Sensors of the mated gripper: as in the cell, only the parts gripper has light beams, and only the tool gripper
-    /// force gages.
+    /// Sensors of the mated gripper, as in the cell.
     fn sense_gripper(&mut self) -> (GripSensors, ForceSensor) {
         let Some(hand) = self.changer.mated() else { return Default::default() };
         let tool = self.tool();

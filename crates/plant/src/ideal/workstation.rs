@@ -15,10 +15,7 @@ use crate::{
 };
 
 impl Ideal {
-    /// Execute an action.
-    ///
-    /// # Errors
-    /// [`WorkstationError`]. The state is then unchanged.
+    /// Execute an action. On error, the state is unchanged.
     pub fn workstation(&mut self, action: &WorkstationAction) -> Result<(), WorkstationError> {
         self.description().admits(action)?;
         match action {
@@ -31,7 +28,6 @@ impl Ideal {
                 let kind = self.description().kind(part)?.clone();
                 self.put(kind, *frame)?;
             }
-            // Its parts have no numbers.
             WorkstationAction::Remove { id } => return Err(WorkstationError::NoSuchPart { id: *id }),
             WorkstationAction::ViseOpen => self.open_vise(Jaws::Open),
             WorkstationAction::VisePartial => self.open_vise(Jaws::Partial),
@@ -89,7 +85,6 @@ impl Ideal {
         }
     }
 
-    /// Close the jaws, on a part if there is one.
     fn clamp(&mut self) {
         let mut layout = self.layout();
         let held = self.held().map(|hold| hold.part);

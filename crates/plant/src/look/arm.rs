@@ -1,7 +1,4 @@
-//! Meshes of the T3: base column, turret, upper arm, forearm, wrist.
-//!
-//! Each mesh covers the cylinder that the collision model uses for its link ([`crate::bodies`]); hydraulics, hoses and
-//! bolts lie outside it.
+//! Meshes of the T3: each covers the cylinder of its link in the collision model ([`crate::bodies`]).
 
 use core::f64::consts::TAU;
 
@@ -21,12 +18,9 @@ use geometry::{
 
 /// Distance of the mesh's surface from the collision body of a link, in: as thin as a coat of paint.
 const COAT: f64 = 0.15;
-/// Thickness of the plates of a fork joint, in.
-const CHEEK: f64 = 1.8;
-/// Gap between a fork and the part that turns in it, in.
-const PLAY: f64 = 0.4;
+const CHEEK: f64 = 1.8; // thickness of the plates of a fork joint, in
+const PLAY: f64 = 0.4; // gap between a fork and the part that turns in it, in
 
-/// The mesh of a link of the arm, by its joint.
 #[must_use]
 pub fn mesh(joint: usize, cell: &CellDescription) -> Mesh {
     let (radius, half) = turret(cell);
@@ -60,7 +54,6 @@ pub fn base(block: &Block) -> Mesh {
             rotation: Rotation::from_axis_angle(&Vector::x_axis(), TAU / 4.0),
         };
         for y in [-9.0, 9.0] {
-            // A rib from the flange up the column.
             let rib = [(x, 1.5 - z), (x + 5.5, 1.5 - z), (x + 0.6, 14.0 - z), (x, 14.0 - z)];
             side.plate(Charcoal, &upright, &rib, y - 0.5, y + 0.5);
             side.rod(Bright, [x + 4.0, y + 3.6, 1.2 - z], [x + 4.0, y + 3.6, 2.4 - z], 0.9, 0.2, 6);
@@ -72,7 +65,6 @@ pub fn base(block: &Block) -> Mesh {
         }
         mesh.add(&turn, &side);
     }
-    // Hydraulic lines come in from behind.
     for across in [-6.0, -2.0, 2.0] {
         mesh.rod(
             Bright,
@@ -95,7 +87,6 @@ fn turret_mesh(radius: f64, half: f64) -> Mesh {
         [(0.0, coat), (2.0 * half, coat), (2.0 * half + 0.8, coat - 0.8), (2.0 * half + 1.2, coat - 3.0)];
     mesh.lathe(Orange, [0.0, 0.0, -half], [0.0, 0.0, half], ROUND, &drum);
     mesh.rod(Charcoal, [0.0, 0.0, half + 1.0], [0.0, 0.0, half + 2.2], 4.0, 0.4, ROUND);
-    // The axle of the shoulder, with a rotary actuator at each end.
     let out = coat + PLAY + CHEEK;
     for side in [-1.0, 1.0] {
         let y = |distance: f64| [0.0, side * distance, 0.0];
@@ -107,7 +98,6 @@ fn turret_mesh(radius: f64, half: f64) -> Mesh {
             let (x, z) = (3.9 * libm::cos(angle), 3.9 * libm::sin(angle));
             mesh.rod(Bright, [x, side * (out + 3.5), z], [x, side * (out + 4.0), z], 0.35, 0.0, 6);
         }
-        // A hydraulic cylinder at the back balances the weight of the arm.
         let (back, aside) = (-coat - 1.4, 4.2 * side);
         mesh.rod(Charcoal, [back, aside, -half + 2.0], [back, aside, half - 4.0], 2.0, 0.3, ROUND);
         mesh.rod(Cream, [back, aside, -half + 3.6], [back, aside, -half + 6.4], 2.08, 0.1, ROUND);
@@ -172,7 +162,6 @@ fn upper_arm(turret: f64, radius: f64) -> Mesh {
     ];
     let rings: Vec<Vec<Vector>> = beam.iter().map(|(x, y, z)| rounded(*x, [r + y, r + z], 2.4)).collect();
     mesh.loft(Orange, &rings);
-    // The elbow: a drum in which the forearm's axle turns.
     mesh.rod(Orange, [elbow, -r, 0.0], [elbow, r, 0.0], r + 0.05, 0.05, ROUND);
     for side in [-1.0, 1.0] {
         let y = side * (r + 0.1);
@@ -180,7 +169,6 @@ fn upper_arm(turret: f64, radius: f64) -> Mesh {
         mesh.cuboid(Cream, [front + 7.0, low, -3.4], [elbow - 8.5, high, 3.4], 0.25);
         lettering(&mut mesh, front + 10.0, y, side);
     }
-    // The cylinder of the elbow lies on the upper arm.
     let z = r + 3.4;
     for (x, high) in [(front + 2.5, 4.6), (elbow - 3.0, 4.6)] {
         mesh.cuboid(Charcoal, [x - 1.5, -1.6, r - 0.5], [x + 1.5, 1.6, r + high], 0.4);
@@ -234,7 +222,6 @@ fn forearm(upper: f64, radius: f64) -> Mesh {
     mesh.loft(Orange, &rings);
     mesh.rod(Orange, [wrist, -r, 0.0], [wrist, r, 0.0], r + 0.02, 0.05, ROUND);
     mesh.cuboid(Cream, [wrist - 8.0, -r - 0.12, -r - 0.12], [wrist - 6.4, r + 0.12, r + 0.12], 2.0);
-    // Three motors drive the wrist, each by a shaft.
     for (aside, up) in [(-3.2, 1.6), (0.0, 2.4), (3.2, 1.6)] {
         let z = r + up;
         mesh.rod(Charcoal, [front + 1.5, aside, z], [front + 10.0, aside, z], 1.45, 0.3, ROUND);
@@ -259,14 +246,12 @@ fn forearm(upper: f64, radius: f64) -> Mesh {
     mesh
 }
 
-/// The link that pitches: hubs at the end of the forearm, and a yoke with the yaw axis.
 fn wrist_pitch(forearm: f64, radius: f64) -> Mesh {
     let mut mesh = Mesh::default();
     let out = forearm + COAT;
     for side in [-1.0, 1.0] {
         mesh.rod(Charcoal, [0.0, side * (out - 0.3), 0.0], [0.0, side * (out + 0.7), 0.0], 2.9, 0.3, ROUND);
         mesh.rod(Bright, [0.0, side * (out + 0.6), 0.0], [0.0, side * (out + 0.9), 0.0], 1.2, 0.0, 6);
-        // A round arm of the yoke.
         let z = side * (radius + 0.2);
         let [low, high] = if side > 0.0 { [z, z + 0.8] } else { [z - 0.8, z] };
         mesh.cuboid(Orange, [-1.5, -2.4, low], [T3.pitch_to_yaw, 2.4, high], 0.25);
@@ -290,7 +275,6 @@ fn wrist_yaw(radius: f64) -> Mesh {
     mesh
 }
 
-/// The link that rolls: a round body up to the end plate, with the hoses of the gripper.
 fn end_plate(radius: f64) -> Mesh {
     let mut mesh = Mesh::default();
     let r = radius + 0.06;

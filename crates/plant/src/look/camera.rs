@@ -1,8 +1,8 @@
 //! Draws the picture of the wrist camera, with the answer of the vision system.
 //!
-//! The picture shows the faces that vision evaluated ([`crate::camera::Subject`]), tool Y to the left and tool Z up.
-//! The outline of the part in the answer is green if vision recognised it and yellow if not. A cross marks the centroid
-//! of the answer, with a line in the direction of the fingers' motion. A red border means that vision found no part.
+//! It shows the faces that vision evaluated ([`crate::camera::Subject`]), tool Y to the left and tool Z up. The part in
+//! the answer is green if recognised, else yellow. The cross marks the centroid, its line the motion of the fingers. A
+//! red border means that no part was found.
 
 use crate::{
     camera::{Face, Subject, subject::RASTER},
@@ -13,8 +13,7 @@ use geometry::frame::Vector;
 use interfaces::device::{VisionResponse, VisionStatus};
 use png::{ColorType, Compression, Encoder, EncodingError};
 
-/// Width and height of the picture, pixels.
-const SIZE: usize = 160;
+const SIZE: usize = 160; // width and height of the picture, pixels
 /// Palette: index 0 is the background, 1 to 11 are greys from dark to bright, then the colours of the marks.
 const GREYS: u8 = 11;
 const FOUND: u8 = GREYS + 1;
@@ -23,12 +22,10 @@ const NOTHING: u8 = GREYS + 3;
 
 struct Canvas {
     pixels: Vec<u8>,
-    /// Half the width of the field of view, divided by the distance.
-    widest: f64,
+    widest: f64, // half the width of the field of view, divided by the distance
 }
 
 impl Canvas {
-    /// Projects a point in camera axes to pixels.
     fn place(&self, point: &Vector) -> [f64; 2] {
         let half = SIZE as f64 / 2.0;
         let scale = half / (self.widest * point.x.max(1e-3));
@@ -42,7 +39,6 @@ impl Canvas {
         }
     }
 
-    /// Draws a line two pixels thick.
     fn line(&mut self, [ax, ay]: [f64; 2], [bx, by]: [f64; 2], colour: u8) {
         let steps = ((bx - ax).abs().max((by - ay).abs()).min(4.0 * SIZE as f64) * 2.0) as usize + 1;
         for step in 0..=steps {
@@ -101,17 +97,14 @@ pub fn draw(camera: &Camera, subjects: &[Subject], answer: &VisionResponse) -> V
     let mut palette = vec![[0x22, 0x3A, 0x55]];
     palette.extend((0..GREYS).map(|grey| [60 + 18 * grey; 3]));
     palette.extend([[0x3C, 0xE0, 0x78], [0xFF, 0xC8, 0x2E], [0xE0, 0x3C, 0x3C]]);
-    // Writing to a vector cannot fail.
     png(&canvas.pixels, &palette).unwrap_or_default()
 }
 
-/// A PNG file with a palette of red, green, blue.
 fn png(pixels: &[u8], palette: &[[u8; 3]]) -> Result<Vec<u8>, EncodingError> {
     let (mut file, side) = (Vec::new(), SIZE as u32);
     let mut encoder = Encoder::new(&mut file, side, side);
     encoder.set_color(ColorType::Indexed);
     encoder.set_palette(palette.as_flattened());
-    // Drawn pictures are small, and a run writes one per answer of vision.
     encoder.set_compression(Compression::Fast);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(pixels)?;
@@ -141,7 +134,6 @@ mod tests {
     use crate::CellDescription;
     use geometry::frame::Frame;
 
-    /// A bar 590 mm before the camera, an inch to the left.
     fn bar() -> Subject {
         let frame = Frame { position: Vector::new(23.54, 1.0, 0.0), ..Frame::identity() };
         Subject::new(Face::of(&frame, &Vector::new(0.625, 0.625, 4.0)), 0.5, |_| true)

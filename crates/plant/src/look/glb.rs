@@ -8,12 +8,10 @@ use geometry::frame::Vector;
 
 use crate::{look::mesh::Mesh, scene::Material};
 
-/// Metres per inch.
-const INCH: f64 = 0.0254;
+const INCH: f64 = 0.0254; // metres per inch
 /// The magic words `glTF`, `JSON` and `BIN` of the file and its chunks.
 const MAGIC: [&[u8; 4]; 3] = [b"glTF", b"JSON", b"BIN\0"];
 
-/// Vertices and triangles of one material.
 #[derive(Default)]
 struct Surface {
     known: BTreeMap<[u32; 6], u32>,
@@ -38,7 +36,6 @@ fn y_up(v: &Vector, scale: f64) -> [f32; 3] {
     [v.x, v.z, -v.y].map(|value| ((value * scale * 1e5).round() / 1e5 + 0.0) as f32)
 }
 
-/// The mesh as a GLB file.
 #[must_use]
 pub fn encode(mesh: &Mesh) -> Vec<u8> {
     let mut surfaces: BTreeMap<Material, Surface> = BTreeMap::new();
@@ -92,7 +89,6 @@ pub fn encode(mesh: &Mesh) -> Vec<u8> {
     }
     let mut json =
         r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}]"#.to_owned();
-    // Writing to a string cannot fail.
     let _ = write!(
         json,
         r#","meshes":[{{"primitives":[{}]}}],"materials":[{}],"accessors":[{}],"bufferViews":[{}],"buffers":[{{"byteLength":{}}}]}}"#,

@@ -1,7 +1,4 @@
-//! Meshes of the end effectors: quick change with its camera, grippers with their fingers, and the pedestal's hand.
-//!
-//! The faces of bodies and fingers coincide with the boxes of the collision model; ribs, rails and hoses are on
-//! sides without contacts.
+//! Meshes of the end effectors. The faces of bodies and fingers coincide with the boxes of the collision model.
 
 use core::f64::consts::TAU;
 
@@ -15,8 +12,7 @@ use crate::{
 };
 use geometry::kinematics::T3;
 
-/// Small chamfer, in: gripped parts lie against the adjacent faces.
-const EDGE: f64 = 0.03;
+const EDGE: f64 = 0.03; // small chamfer, in: gripped parts lie against the adjacent faces
 
 #[must_use]
 pub(crate) fn body(cell: &CellDescription, hand: Hand) -> Mesh {
@@ -31,7 +27,6 @@ pub(crate) fn finger(cell: &CellDescription, hand: Hand, side: f64) -> Mesh {
     finger_mesh(hand.description(cell), side, mark(hand))
 }
 
-/// The colour that identifies the hand.
 const fn mark(hand: Hand) -> Material {
     match hand {
         Hand::Parts => Green,
@@ -83,7 +78,6 @@ pub fn quick_change(cell: &CellDescription) -> Mesh {
     mesh
 }
 
-/// B plate, body and ears of a gripper, with the rails of the fingers and an air cylinder on each side.
 fn robot_gripper(cell: &CellDescription, gripper: &Gripper, mark: Material) -> Mesh {
     let mut mesh = Mesh::default();
     let (change, plate) = (&cell.quick_change, gripper.plate());
@@ -96,7 +90,6 @@ fn robot_gripper(cell: &CellDescription, gripper: &Gripper, mark: Material) -> M
     let [back, front] = [-1.0, 1.0].map(|side| body.0.position.x + side * body.1.x / 2.0);
     let [wide, high] = [body.1.y / 2.0, body.1.z / 2.0];
     for side in [-1.0, 1.0] {
-        // Rails, and the coloured mark that identifies the gripper.
         mesh.rod(Bright, [front, -wide + 0.3, side * 1.3], [front, wide - 0.3, side * 1.3], 0.22, 0.0, SMALL);
         let [low, top] = if side > 0.0 { [high - 0.02, high + 0.06] } else { [-high - 0.06, 0.02 - high] };
         mesh.cuboid(mark, [back + 0.5, -wide + 0.6, low], [back + 1.5, wide - 0.6, top], 0.0);
@@ -134,7 +127,6 @@ fn finger_mesh(gripper: &Gripper, side: f64, mark: Material) -> Mesh {
     slab(Steel, [root + 0.8, root + 1.8], outer - 0.05, outer + 0.55, z * 0.4, 0.0);
     slab(Steel, [root + 1.7, root + 2.6], outer - 0.05, outer + 0.28, z * 0.4, 0.0);
     if let Some(groove) = gripper.groove {
-        // The V groove in the pad.
         let x = tip + groove;
         slab(Bright, [x - 0.3, x + 0.3], inner - 0.005, inner + 0.1, z, 0.0);
         slab(Rubber, [x - 0.06, x + 0.06], inner - 0.01, inner + 0.1, z, 0.0);

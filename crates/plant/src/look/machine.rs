@@ -12,13 +12,11 @@ use crate::{
     },
 };
 
-/// The body of the vise around its shapes, which are boxes.
 #[must_use]
 pub fn vise(vise: &Vise, visuals: &[Visual]) -> Mesh {
     let mut body = boxes(visuals, 0.12);
     let ([front, back], [right, left]) = (vise.body_x, vise.body_y);
     let ledge = -vise.jaw[2];
-    // Ways for the jaw, the spindle that moves it, its motor at the back, and a name plate in front.
     for x in [front + 0.5, back - 1.1] {
         body.cuboid(Bright, [x, right + 0.2, ledge - 0.1], [x + 0.6, left - 0.2, ledge + 0.02], 0.0);
     }
@@ -50,8 +48,8 @@ pub fn jaw(vise: &Vise, visuals: &[Visual]) -> Mesh {
     jaw
 }
 
-/// Boxes; the edges of steel are sharp, those of other materials have a chamfer.
 fn boxes(visuals: &[Visual], chamfer: f64) -> Mesh {
+    // steel without a chamfer
     let mut mesh = Mesh::default();
     for Visual { frame, shape, colour } in visuals {
         if let Shape::Box(size) = shape {
@@ -62,7 +60,6 @@ fn boxes(visuals: &[Visual], chamfer: f64) -> Mesh {
     mesh
 }
 
-/// The pallet: a bed with slots in its top; coordinates of the block's frame.
 #[must_use]
 pub fn pallet(block: &Block) -> Mesh {
     let mut mesh = Mesh::default();
@@ -79,8 +76,7 @@ pub fn pallet(block: &Block) -> Mesh {
     mesh
 }
 
-/// The column with the spindle head, which faces -X at the height `spindle` above the block's middle, inches;
-/// coordinates of the block's frame.
+/// The column with the spindle head, which faces -X at the height `spindle` above the block's middle, in.
 #[must_use]
 pub fn column(block: &Block, spindle: f64) -> Mesh {
     let mut mesh = Mesh::default();
@@ -88,7 +84,6 @@ pub fn column(block: &Block, spindle: f64) -> Mesh {
     mesh.cuboid(White, [-x, -y, -z], [x, y, z], 0.8);
     mesh.cuboid(Petrol, [-x - 0.4, -y - 0.4, -z], [x + 0.4, y + 0.4, -z + 14.0], 0.5);
     mesh.cuboid(Petrol, [-x - 0.4, -y - 0.4, z - 9.0], [x + 0.4, y + 0.4, z - 3.0], 0.5);
-    // Ways for the head, with covers next to them.
     for side in [-9.5, 9.5] {
         mesh.cuboid(Bright, [-x - 1.4, side - 1.0, -z + 16.0], [-x + 0.2, side + 1.0, z - 10.0], 0.1);
     }
@@ -104,14 +99,12 @@ pub fn column(block: &Block, spindle: f64) -> Mesh {
     mesh.lathe(Steel, [-x - 6.4, 0.0, spindle], [-x - 20.0, 0.0, spindle], ROUND, &nose);
     mesh.rod(Rubber, [-x - 11.0, 0.0, spindle], [-x - 11.3, 0.0, spindle], 1.3, 0.0, ROUND);
     mesh.rod(Gold, [-x - 11.0, 0.0, spindle], [-x - 13.2, 0.0, spindle], 0.55, 0.1, SMALL);
-    // A window, and the lamp that shows the machine's state.
     mesh.cuboid(Rubber, [-x - 0.5, y - 12.0, 2.0], [-x + 0.2, y - 3.0, 22.0], 0.4);
     for (step, lamp) in [Green, Yellow, Red].into_iter().enumerate() {
         let up = z + 3.0 + 2.6 * count(step);
         mesh.rod(lamp, [0.0, -y + 6.0, up], [0.0, -y + 6.0, up + 2.5], 1.3, 0.2, ROUND);
     }
     mesh.rod(Charcoal, [0.0, -y + 6.0, z - 0.2], [0.0, -y + 6.0, z + 3.2], 0.6, 0.0, SMALL);
-    // The operator's panel on an arm, at the open side.
     mesh.rod(Charcoal, [-4.0, -y + 0.2, 24.0], [-4.0, -y - 8.0, 24.0], 0.9, 0.2, SMALL);
     mesh.cuboid(Charcoal, [-5.5, -y - 16.0, 2.0], [-2.5, -y - 3.0, 22.0], 0.6);
     mesh.cuboid(Light, [-5.7, -y - 14.5, 12.0], [-5.3, -y - 4.5, 20.0], 0.1);
@@ -124,8 +117,8 @@ pub fn column(block: &Block, spindle: f64) -> Mesh {
     mesh
 }
 
-/// The tool drum: the block of the description with a disc of tool pockets in front. `exchange` is the pocket where
-/// tools are exchanged, inches in the block's frame.
+/// The tool drum with a disc of tool pockets in front; `exchange` is the pocket for exchanges, in, in the block's
+/// frame.
 #[must_use]
 pub fn drum(block: &Block, exchange: [f64; 3]) -> Mesh {
     const POCKETS: usize = 9;

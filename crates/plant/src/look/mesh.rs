@@ -1,7 +1,7 @@
 //! Closed solids of triangles, in inches, and the functions that build them.
 //!
-//! A [`Mesh`] is a collection of pieces. Each piece is closed and has one material; pieces may overlap. Nearly all
-//! pieces are lofts: rings with equal numbers of points, joined by quadrangles, with a cap at each end.
+//! Each piece is closed and has one material; pieces may overlap. Nearly all pieces are lofts: rings with equal numbers
+//! of points, joined by quadrangles, with caps.
 
 use core::f64::consts::{PI, TAU};
 
@@ -9,28 +9,22 @@ use geometry::frame::{Frame, Rotation, Vector};
 
 use crate::scene::Material;
 
-/// Faces that meet at a smaller angle than this are shaded as one smooth surface, weighted by area: the cosine of 63
-/// degrees. A chamfered edge then looks round and needs few vertices.
+/// Faces that meet at a smaller angle than this are shaded as one surface: the cosine of 63 degrees.
 const CREASE: f64 = 0.454;
 /// Points of a circle large enough to show its corners.
 pub const ROUND: usize = 24;
 pub const SMALL: usize = 10;
 
-/// A corner of a triangle, with its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
-    /// Position, inches.
-    pub position: Vector,
-    /// Normal of the surface at the corner.
+    pub position: Vector, // inches
     pub normal: Vector,
 }
 
-/// A closed surface of one material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
     pub material: Material,
-    /// Triangles, counter-clockwise as seen from outside, inches.
-    pub triangles: Vec<[Vector; 3]>,
+    pub triangles: Vec<[Vector; 3]>, // Triangles, counter-clockwise as seen from outside, inches
 }
 
 impl Piece {
@@ -99,7 +93,6 @@ impl Mesh {
         self.pieces.iter().map(|piece| piece.triangles.len()).sum()
     }
 
-    /// Adds another mesh that is given in `frame`.
     pub fn add(&mut self, frame: &Frame, other: &Self) {
         let at = |point: &Vector| frame.shifted(*point).position;
         self.pieces.extend(other.pieces.iter().map(|piece| Piece {
@@ -108,8 +101,7 @@ impl Mesh {
         }));
     }
 
-    /// Adds a loft: rings with equal numbers of points, joined, with a cap on the first and the last. Each ring is
-    /// convex and counter-clockwise as seen from the rings that follow it.
+    /// Adds a loft of rings with equal numbers of points, each convex and counter-clockwise as seen from the next.
     pub fn loft(&mut self, material: Material, rings: &[Vec<Vector>]) {
         let mut triangles = Vec::new();
         let mut face = |a: Vector, b: Vector, c: Vector| {
@@ -164,15 +156,14 @@ impl Mesh {
         self.loft(material, &rings);
     }
 
-    /// Adds a box by its middle and size.
     pub fn block(&mut self, material: Material, middle: [f64; 3], size: [f64; 3], chamfer: f64) {
         let low = [0, 1, 2].map(|i| middle[i] - size[i] / 2.0);
         let high = [0, 1, 2].map(|i| middle[i] + size[i] / 2.0);
         self.cuboid(material, low, high, chamfer);
     }
 
-    /// Adds a solid of revolution about the line from `from` towards `to`: pairs of distance along the line and
-    /// radius. The polygon of `points` corners circumscribes the circle, so that the solid is nowhere too thin.
+    /// Adds a solid of revolution from pairs of distance along the line and radius. The polygon of `points` corners
+    /// circumscribes the circle.
     pub fn lathe(
         &mut self,
         material: Material,
@@ -222,7 +213,6 @@ impl Mesh {
         let mut path = Vec::new();
         for i in 0..knots.len().saturating_sub(1) {
             let [a, b, c, d] = [knot(i, 2), knot(i, 1), knot(i + 1, 1), knot(i + 2, 1)];
-            // Catmull-Rom spline.
             path.extend((0..STEPS).map(|step| {
                 let t = count(step) / count(STEPS);
                 (b * 2.0
@@ -258,7 +248,6 @@ impl Mesh {
     }
 }
 
-/// A small number as `f64`, exact.
 #[must_use]
 pub fn count(n: usize) -> f64 {
     u32::try_from(n).map_or(f64::MAX, f64::from)
@@ -287,7 +276,6 @@ pub fn rounded(x: f64, half: [f64; 2], radius: f64) -> Vec<Vector> {
     corners.into_iter().enumerate().flat_map(corner).collect()
 }
 
-/// A frame at a position, rotated about +Z by `degrees`.
 #[must_use]
 pub fn standing(position: [f64; 3], degrees: f64) -> Frame {
     Frame {

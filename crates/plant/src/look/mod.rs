@@ -1,10 +1,7 @@
 //! Visual meshes of the cell: one per link of a [`Scene`], generated from the description of the cell.
 //!
-//! [`Scene::models`] makes parametric solids, which become glTF files. They are for display only: the physics has its
-//! own bodies ([`crate::bodies`], [`crate::scene`]). Each mesh covers the bodies of its link, so that contacts of the
-//! physics show no gap. [`Scene::labels`] lists the names to display; [`camera`] draws the camera's pictures.
-//!
-//! The same description gives the same bytes. Lengths are inches; [`glb`] converts to metres.
+//! [`Scene::models`] makes glTF files for display only: each mesh covers the bodies of its link. [`Scene::labels`]
+//! lists the names to display; [`camera`] draws pictures. Lengths are inches; [`glb`] converts to metres.
 
 pub mod arm;
 pub mod camera;
@@ -26,8 +23,7 @@ pub struct Model {
     pub name: String,
     /// Name of the link with which it moves; `world` for fixed bodies.
     pub frame: String,
-    /// The solids, in the coordinates of the frame, inches.
-    pub mesh: Mesh,
+    pub mesh: Mesh, // the solids, in the coordinates of the frame, inches
 }
 
 impl Model {
@@ -36,27 +32,23 @@ impl Model {
         Self { name: link.into(), frame: link.into(), mesh }
     }
 
-    /// The model of a group of fixed things, in world coordinates.
     #[must_use]
     pub fn standing(name: &str, mesh: Mesh) -> Self {
         Self { name: name.into(), frame: ROOT.into(), mesh }
     }
 
-    /// The mesh as a GLB file.
     #[must_use]
     pub fn glb(&self) -> Vec<u8> {
         glb::encode(&self.mesh)
     }
 }
 
-/// A text label next to an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
     pub text: String,
     /// Name of the link with which it moves.
     pub frame: &'static str,
-    /// Position in the frame, inches.
-    pub position: [f64; 3],
+    pub position: [f64; 3], // inches
 }
 
 impl Scene<'_> {
@@ -97,13 +89,11 @@ impl Scene<'_> {
         };
         let mut labels = vec![label("T3", "turret", [0.0, 0.0, 2.0 * cell.robot.upper_arm_radius + 6.0])];
         for (tray, number) in cell.tray.iter().zip(1..) {
-            // At different heights, because the trays are side by side.
             let ([x, y], up) = (tray.centre, 7.0 * f64::from(number));
             labels.push(label(&format!("tray {}", tray.unit), ROOT, [x, y, tray.floor + up]));
         }
         let [_, _, up] = cell.vise.jaw;
         labels.push(label("vise", "vise", [cell.vise.jaw[0], 0.0, 2.0 * up]));
-        // At different heights, because these are side by side.
         labels.extend(above("machining centre", "machine_column", 18.0));
         labels.extend(above("tool drum", "tool_drum", 8.0));
         let [x, y, z] = cell.pedestal.position;

@@ -7,7 +7,6 @@ use crate::{
     solid::along,
 };
 
-/// Chamfer of a part's edges, in.
 const EDGE: f64 = 0.03;
 
 /// A part in its own frame: origin at its middle, X down as the part lies, Z along it.
@@ -25,7 +24,6 @@ pub fn mesh(kind: &PartType) -> Mesh {
         mesh.rod(material, at(-half), at(half), radius, EDGE, ROUND);
         return mesh;
     }
-    // A tool in its holder: the flange with a ring in the colour of tools, and the cutter in front.
     mesh.rod(Steel, at(-half), at(half), radius, EDGE, ROUND);
     mesh.rod(material, at(-half + 0.5), at(-half + 1.3), radius + 0.02, 0.0, ROUND);
     mesh.rod(Bright, at(half - 0.9), at(half - 0.6), radius + 0.015, 0.0, ROUND);

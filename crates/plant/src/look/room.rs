@@ -1,6 +1,4 @@
-//! Meshes of fixed things: floor, fence, benches, trays, holsters, and the cabinets behind the robot.
-//!
-//! The mesh of a block contains the block's own box. All other meshes are out of the arm's reach.
+//! Meshes of fixed things. The mesh of a block contains the block's own box; all others are out of the arm's reach.
 
 use crate::{
     CellDescription,
@@ -19,14 +17,11 @@ use crate::{
 };
 use geometry::frame::{Frame, Vector};
 
-/// Chamfer of surfaces that parts lie on or lean against, in.
-const EDGE: f64 = 0.03;
-/// Chamfer of surfaces without contacts, in.
-const BEVEL: f64 = 0.25;
+const EDGE: f64 = 0.03; // chamfer of surfaces that parts lie on or lean against, in
+const BEVEL: f64 = 0.25; // chamfer of surfaces without contacts, in
 /// Height of a cover above the body under it, in: two faces in one plane would flicker.
 const PAINT: f64 = 0.015;
-/// Height of the spindle above the top of the jaws, in.
-const SPINDLE: f64 = 10.0;
+const SPINDLE: f64 = 10.0; // height of the spindle above the top of the jaws, in
 /// The fenced area, as shares of half the floor: left, right, back and front border.
 const YARD: [f64; 4] = [-0.68, 0.92, 0.44, -0.78];
 
@@ -60,7 +55,6 @@ pub fn models(cell: &CellDescription, blocks: &[&Block]) -> Vec<Model> {
     named.map(|(name, mesh)| Model::standing(name, mesh)).collect()
 }
 
-/// The group of a block, and its mesh in its own frame.
 fn look(cell: &CellDescription, block: &Block) -> (&'static str, Mesh) {
     let boxed = |edge| {
         let mut mesh = Mesh::default();
@@ -108,7 +102,6 @@ fn tray(block: &Block, floor: bool) -> Mesh {
     mesh
 }
 
-/// The block on the pallet that work is clamped to.
 fn tower(block: &Block) -> Mesh {
     let mut mesh = Mesh::default();
     let [x, y, z] = (block.size / 2.0).into();
@@ -124,7 +117,6 @@ fn tower(block: &Block) -> Mesh {
     mesh
 }
 
-/// A bench with a wooden top and drawers.
 fn bench(block: &Block) -> Mesh {
     let mut mesh = Mesh::default();
     let [x, y, z] = (block.size / 2.0).into();
@@ -162,7 +154,6 @@ fn bench(block: &Block) -> Mesh {
     mesh
 }
 
-/// The stand of the pedestal: a box with the motor of the table at its side.
 fn stand(block: &Block) -> Mesh {
     let mut mesh = Mesh::default();
     let [x, y, z] = (block.size / 2.0).into();
@@ -187,14 +178,12 @@ fn post(mesh: &mut Mesh, under: &Vector, floor: f64) {
     mesh.rod(Charcoal, [under.x, under.y, floor], [under.x, under.y, floor + 0.8], 4.2, 0.2, ROUND);
 }
 
-/// Borders of the fenced area on a floor: left, right, back, front, inches.
 fn yard(floor: &Block) -> [f64; 4] {
     let (middle, half) = (floor.frame.position, floor.size / 2.0);
     let at = |share: f64, axis: usize| middle[axis] + share * half[axis];
     [at(YARD[0], 0), at(YARD[1], 0), at(YARD[2], 1), at(YARD[3], 1)]
 }
 
-/// Lines on the floor: the border of the fenced area, and a hatched strip at the entrance.
 fn paint(mesh: &mut Mesh, floor: &Block, top: f64) {
     let [left, right, back, front] = yard(floor);
     let high = top + 0.08;
@@ -265,7 +254,6 @@ fn fence(mesh: &mut Mesh, floor: &Block, top: f64) {
 fn cabinets(mesh: &mut Mesh, base: &Block, top: f64) {
     let [x, y] = [base.frame.position.x, base.frame.position.y + base.size.y / 2.0 + 26.0];
     let mut at = Mesh::default();
-    // The controller.
     at.cuboid(Cream, [-62.0, -10.0, 0.0], [-26.0, 10.0, 66.0], 0.6);
     at.cuboid(Charcoal, [-62.4, -10.4, 0.0], [-25.6, 10.4, 5.0], 0.4);
     at.cuboid(Orange, [-62.1, -10.1, 56.0], [-25.9, 10.1, 58.5], 0.2);
@@ -277,7 +265,6 @@ fn cabinets(mesh: &mut Mesh, base: &Block, top: f64) {
         let (across, up) = (-40.0 + 4.0 * column, 48.0 - 4.0 * row);
         at.rod(lamp, [across, -9.9, up], [across, -10.9, up], 1.0, 0.2, SMALL);
     }
-    // The power unit: tank, pump with motor, accumulator.
     at.cuboid(Petrol, [22.0, -12.0, 3.0], [58.0, 12.0, 21.0], 0.8);
     at.cuboid(Charcoal, [20.0, -13.0, 0.0], [60.0, 13.0, 3.2], 0.4);
     at.rod(Charcoal, [26.0, -3.0, 27.0], [42.0, -3.0, 27.0], 5.5, 0.8, ROUND);

@@ -6,41 +6,33 @@
 //!            └──power off, then on, at PROG─── on, PROG, obeys nothing
 //! ```
 //!
-//! According to IV.1 the power is turned off and on again at the end, and the switch is at PROG whenever the power is
-//! turned on. A controller that was at MANUAL, or was turned on there, therefore ignores its serial line (CHOSEN).
+//! A controller that was at MANUAL, or was turned on there, ignores its serial line (CHOSEN).
 
 use interfaces::station::TableKey;
 use serde::{Deserialize, Serialize};
 
 use super::Table;
 
-/// More steps than between the two limit switches.
-const FAR: f64 = 1e6;
+const FAR: f64 = 1e6; // more steps than between the two limit switches
 
-/// Reasons for which the panel refuses a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableRefusal {
     #[error("the rotary table controller has no power: table power on comes first")]
     NoPower,
-    /// The mode switch is not at MANUAL.
     #[error("the mode switch of the rotary table controller stands at PROG: table mode manual comes first")]
     NotManual,
     #[error("the rotary table turns: ask again when it stands")]
     Turns,
 }
 
-/// Switches of the panel, and the resulting state of the controller.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub struct TablePanel {
     pub power: bool,
-    /// The mode switch is at MANUAL.
     pub manual: bool,
     /// The controller obeys the orders of its serial line.
     pub obeys: bool,
-    /// Ticks for which RUN is held down, including one for its release.
-    run: u32,
-    /// Number of the last ignored order, which is not executed later.
-    missed: u32,
+    run: u32,    // ticks for which RUN is held down, including one for its release
+    missed: u32, // number of the last ignored order, which is not executed later
 }
 
 impl TablePanel {
@@ -60,10 +52,7 @@ impl Table {
         self.panel.manual && self.moving()
     }
 
-    /// Press a key, or turn a switch.
-    ///
-    /// # Errors
-    /// [`TableRefusal`]. The state is then unchanged.
+    /// Press a key, or turn a switch. On error, the state is unchanged.
     pub fn press(&mut self, key: TableKey) -> Result<(), TableRefusal> {
         match key {
             TableKey::Power(on) => self.set_power(on),
@@ -91,7 +80,6 @@ impl Table {
         Ok(())
     }
 
-    /// Release the keys of the panel: a motion by hand ramps down.
     pub fn release_keys(&mut self) {
         if self.is_led_by_hand() {
             self.panel.run = 0;

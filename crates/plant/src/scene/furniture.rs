@@ -1,6 +1,4 @@
-//! Fixed bodies as boxes: the furniture of the description, the trays, the vise.
-//!
-//! Simulation, clearance check and scene use the same list of [`Block`]s.
+//! Fixed bodies as boxes. Simulation, clearance check and scene use the same [`Block`]s.
 
 use geometry::frame::{Frame, Rotation, Vector as Inches};
 use rapier3d_f64::prelude::*;
@@ -15,41 +13,30 @@ use crate::{
 };
 
 pub const WORLD: Group = Group::GROUP_1;
-/// Collision group of the jaws of the vise.
 pub const JAW: Group = Group::GROUP_4;
-/// Collision group of the robot's gripper.
 pub const FINGER: Group = Group::GROUP_2;
-/// Collision group of the pedestal's hand.
 pub const HAND: Group = Group::GROUP_5;
 pub const PART: Group = Group::GROUP_3;
 /// Collision group of the palms of hands: a held part still collides with the palm.
 pub const PALM: Group = Group::GROUP_6;
 
-/// Distance of the backs of the movable jaw behind those of the fixed one, in. The fixed jaw determines the
-/// position of a part, and the movable jaw must not drag it when it closes.
+/// Distance of the backs of the movable jaw behind those of the fixed one, in: it must not drag the part.
 const RELIEF: f64 = 0.02;
 
-/// Coefficient of friction of steel on trays, vise and floor.
-const FRICTION: Real = 0.30;
+const FRICTION: Real = 0.30; // coefficient of friction of steel on trays, vise and floor
 
-/// Collision membership and filter of a collider.
 #[must_use]
 pub const fn groups(member: Group, meets: Group) -> InteractionGroups {
     InteractionGroups::new(member, meets, InteractionTestMode::And)
 }
 
-/// A box of a fixed body or of a jaw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     /// Name of the link that it belongs to.
     pub name: String,
-    /// Its centre and its axes, in the world (or the jaw's frame), in.
-    pub frame: Frame,
-    /// Its size along its axes, in.
-    pub size: Inches,
-    /// Its kind for the clearance check.
+    pub frame: Frame, // its centre and its axes, in the world (or the jaw's frame), in
+    pub size: Inches, // its size along its axes, in
     pub kind: Kind,
-    /// True if it is a jaw of the vise.
     pub jaw: bool,
     /// Its coefficient of friction, if it differs from that of trays, vise and floor.
     pub friction: Option<f64>,
@@ -79,7 +66,6 @@ impl Block {
         Self { frame: by.compose(&self.frame), ..self.clone() }
     }
 
-    /// True if it belongs to the vise, which has links of its own.
     #[must_use]
     pub fn is_of_vise(&self) -> bool {
         self.kind == Kind::Vise
@@ -106,7 +92,6 @@ impl Block {
         }
     }
 
-    /// A collider of this block at its position.
     pub fn collider(&self) -> ColliderBuilder {
         let half = self.half();
         ColliderBuilder::cuboid(half.x, half.y, half.z)
@@ -162,13 +147,11 @@ fn tray_blocks(tray: &Tray, shape: &TrayShape) -> Vec<Block> {
     ]
 }
 
-/// The frame of the vise: X into it, Y left, Z up.
 #[must_use]
 pub fn vise_frame(vise: &Vise) -> Frame {
     Frame { position: Inches::from(vise.position), rotation: Rotation::identity() }
 }
 
-/// Body and fixed jaw, in the frame of the vise.
 fn vise_blocks(vise: &Vise) -> Vec<Block> {
     let height = vise.jaw[2];
     let [front, back] = vise.body_x;
@@ -184,8 +167,7 @@ fn vise_blocks(vise: &Vise) -> Vec<Block> {
     blocks
 }
 
-/// The movable jaw in its own frame, whose Y origin is its inner face: the mirror image of the fixed one, its backs
-/// relieved.
+/// The movable jaw in its own frame, whose Y origin is its inner face.
 #[must_use]
 pub fn jaw_blocks(vise: &Vise) -> Vec<Block> {
     let pieces = jaw_pieces(vise).into_iter().map(|[[x0, x1], [d0, d1], [z0, z1]]| {
@@ -195,9 +177,8 @@ pub fn jaw_blocks(vise: &Vise) -> Vec<Block> {
     pieces.collect()
 }
 
-/// The blocks of a jaw without the steps of all programs: boxes as ranges of depth into the vise, depth behind the
-/// inner face, and height. A step is cut from the front to its back, down to its ledge, and as deep as its clamping
-/// face.
+/// The blocks of a jaw without the steps of all programs: ranges of depth into the vise, depth behind the inner face,
+/// and height.
 fn jaw_pieces(vise: &Vise) -> Vec<[[f64; 2]; 3]> {
     let [into, thickness, height] = vise.jaw;
     let mut depths: Vec<f64> = vise.program.iter().map(|program| program.depth).collect();

@@ -11,25 +11,19 @@ pub enum Material {
     Steel,
     Bright,
     White,
-    /// Doors and skirts of the machine tool.
     Petrol,
     Blue,
-    /// Rims of the trays and lines on them.
     PaleBlue,
     Slate,
     Maple,
     Yellow,
     Concrete,
     Pad,
-    /// Linkbars, and marks of the parts gripper.
     Green,
-    /// Tools, and marks of the tool gripper.
     Red,
     Violet,
-    /// Shafts, and marks of the v-gripper.
     Brass,
     Gold,
-    /// Lamps and the ring of the camera.
     Light,
 }
 

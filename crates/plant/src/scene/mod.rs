@@ -1,7 +1,5 @@
-//! The cell for viewers: a tree of links with joints, shapes and colours, derived from the description.
-//!
-//! [`Scene::urdf`] prints it as text for viewers and other simulators, and [`Scene::models`] as detailed meshes
-//! ([`crate::look`]). [`furniture`] makes the fixed bodies that simulation, clearance check and scene share.
+//! The cell for viewers: a tree of links derived from the description. [`Scene::urdf`] prints it, [`Scene::models`]
+//! gives meshes ([`crate::look`]); [`furniture`] makes the fixed bodies.
 
 mod furniture;
 mod material;
@@ -31,7 +29,6 @@ use crate::{
     solid::along,
 };
 
-/// The frame of fixed bodies.
 pub const ROOT: &str = "world";
 
 #[derive(Clone, Debug)]
@@ -43,8 +40,7 @@ pub struct Scene<'c> {
 /// A body with a frame of its own.
 #[derive(Clone, Debug)]
 pub struct Link<'c> {
-    /// Its name, unique in the scene.
-    pub name: String,
+    pub name: String, // unique in the scene
     /// The link in whose frame its joint starts; [`ROOT`] for the world.
     pub parent: &'static str,
     pub joint: Joint,
@@ -59,13 +55,10 @@ pub(crate) enum Body<'c> {
     Part(&'c PartType),
 }
 
-/// The connection of a link to its parent.
 #[derive(Clone, Debug)]
 pub struct Joint {
-    /// Its name, unique in the scene.
-    pub name: String,
-    /// The link in its parent with the joint at 0, in.
-    pub start: Frame,
+    pub name: String, // unique in the scene
+    pub start: Frame, // the link in its parent with the joint at 0, in
     pub kind: JointKind,
 }
 
@@ -78,7 +71,6 @@ pub enum JointKind {
 }
 
 impl JointKind {
-    /// The name of a joint that has none of its own, by its link.
     fn name_at(self, link: &str) -> String {
         let suffix = if matches!(self, Self::Fixed) { "mount" } else { "free" };
         format!("{link}_{suffix}")
@@ -88,8 +80,7 @@ impl JointKind {
 /// Range, speed and effort of a joint: radians or metres.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
-    /// Its axis in the frame of the link.
-    pub axis: [f64; 3],
+    pub axis: [f64; 3], // in the frame of the link
     pub range: (f64, f64),
     /// Greatest speed, rad/s or m/s.
     pub speed: f64,
@@ -99,8 +90,7 @@ pub struct Motion {
 
 #[derive(Clone, Copy, Debug)]
 pub struct Visual {
-    /// Its place in the link, in.
-    pub frame: Frame,
+    pub frame: Frame, // its place in the link, in
     pub shape: Shape,
     pub colour: Material,
 }
@@ -142,7 +132,6 @@ impl<'c> Scene<'c> {
         &self.links
     }
 
-    /// The fixed bodies; the vise is not among them.
     pub(crate) fn blocks(&self) -> impl Iterator<Item = &Block> {
         self.links.iter().filter_map(|link| match &link.body {
             Body::Fixed(block) => Some(block),

@@ -5,18 +5,14 @@ use geometry::kinematics::JOINT_NAMES;
 use super::ROOT;
 use crate::hand::{HANDS, Hand};
 
-/// A moving body, or one that carries a moving body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Moving {
     /// A link of the arm by its joint, 0 for the turret.
     Arm(usize),
-    /// The A plate of the quick change, with the camera.
     QuickChange,
     Hand(Hand),
     Finger(Hand, Finger),
-    /// The body of the vise with its fixed jaw.
     Vise,
-    /// The movable jaw of the vise.
     Jaw,
 }
 
@@ -37,7 +33,6 @@ impl Finger {
     }
 }
 
-/// Links of the arm from the base.
 const ARM: [&str; 6] = ["turret", "upper_arm", "forearm", "wrist_pitch", "wrist_yaw", "end_plate"];
 
 impl Moving {

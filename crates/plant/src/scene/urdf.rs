@@ -15,7 +15,6 @@ impl Scene<'_> {
         let name = escaped(&self.cell.name);
         let mut text =
             format!("<?xml version=\"1.0\"?>\n<robot name=\"{name}\">\n  <link name=\"{ROOT}\"/>\n");
-        // Writing to a string cannot fail.
         let _ = self.links.iter().try_for_each(|link| put(link, &mut text));
         text + "</robot>\n"
     }

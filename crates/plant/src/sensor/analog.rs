@@ -1,18 +1,14 @@
-//! A sensor with a voltage on a 12-bit converter: offset, scale, noise, and the resolution and limits of the converter.
+//! A sensor with a voltage on a 12-bit converter.
 
 use interfaces::device::ADC_FULL_SCALE;
 
 use crate::noise::Noise;
 
-/// An analog sensor and its converter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Analog {
-    /// Counts at a value of 0.
-    pub offset: f64,
-    /// Counts per unit of the value.
-    pub scale: f64,
-    /// Greatest noise, counts.
-    pub noise: f64,
+    pub offset: f64, // at a value of 0
+    pub scale: f64,  // per unit of the value
+    pub noise: f64,  // counts
 }
 
 impl Analog {

@@ -28,7 +28,6 @@ impl DelayLine {
     }
 }
 
-/// The dead times of a cell's sensors, except those without dead time.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct DeadTimes(Vec<Late>);
 
@@ -41,7 +40,6 @@ struct Late {
 }
 
 impl DeadTimes {
-    /// The dead times of a description.
     #[must_use]
     pub fn new(models: &SensorModels) -> Self {
         let ticks = |sensor: Input| match sensor.kind() {
@@ -56,7 +54,6 @@ impl DeadTimes {
         Self(late.filter(|late| late.ticks > 0).collect())
     }
 
-    /// Once per tick: delay the sensor words.
     pub fn hold_back(&mut self, inputs: &mut DeviceInputs) {
         for Late { sensor, ticks, line } in &mut self.0 {
             let word = line.pass(sensor.read(inputs), *ticks);

@@ -1,14 +1,13 @@
 //! Sensors: models from the true value to the word. The words have the names of [`interfaces::point`].
 //!
-//! A device gives the true value (an opening, a force, a distance), and a chain of small models converts it to a word:
+//! A chain of small models converts the true value to a word:
 //!
 //! ```text
 //!   truth -- Analog (offset, scale, noise, converter) or resolver or Switch (hysteresis) --> word
 //!         -- DeadTimes --> late word -- crate::fault --> what the controller reads
 //! ```
 //!
-//! The cell description has scales and offsets with the devices, and common values of each kind of sensor in
-//! `[sensors]`. The camera has its own models ([`crate::camera`]).
+//! The camera has its own models ([`crate::camera`]).
 
 mod analog;
 mod delay;

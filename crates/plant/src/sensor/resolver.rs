@@ -29,7 +29,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_goes_round_as_well() {
+    fn resolver_noise_wraps() {
         let mut noise = Noise::new(1, Stream::Resolvers);
         let read: Vec<u32> = (0..100).map(|_| counts(0.0, 4.0, &mut noise)).collect();
         assert!(read.iter().all(|read| *read <= 4 || *read >= RESOLVER_COUNTS - 4));

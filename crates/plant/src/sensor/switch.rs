@@ -2,13 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A switching sensor and its state.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Switch(bool);
 
 impl Switch {
-    /// Update with the distance of an object `beyond` the range, negative within it. `hysteresis` is the extra distance
-    /// up to which a detected object stays detected.
+    /// Update with the distance `beyond` the range, negative within it.
     pub fn see(&mut self, beyond: f64, hysteresis: f64) -> bool {
         self.0 = beyond <= if self.0 { hysteresis } else { 0.0 };
         self.0

@@ -1,20 +1,17 @@
-//! Causes of the loss of pressure.
+//! Causes of the loss of pressure, and the keys of the console.
 
 use std::fmt;
 
 use interfaces::station::EStop;
 use serde::{Deserialize, Serialize};
 
-/// Causes of the loss of pressure.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Cut {
     EStop(#[serde(with = "crate::image::word")] EStop),
-    /// The pump, or a line, has failed.
     PressureLost,
     ManualOff,
     KeySwitch,
     ControlPower,
-    /// The Prim Interface Box has lost its power.
     PrimBox,
 }
 

@@ -6,10 +6,7 @@ use geometry::kinematics::T3;
 use super::{BY_EYE, Cut, EStop, Key, Lamps, Refusal, RobotEvent, Stage, T3Controller, off_home};
 
 impl T3Controller {
-    /// Press a key.
-    ///
-    /// # Errors
-    /// [`Refusal`] with the missing step. The state is then unchanged.
+    /// Press a key. Fails with [`Refusal`] with the missing step. The state is then unchanged.
     pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
         let hardware = matches!(
             key,
@@ -68,12 +65,10 @@ impl T3Controller {
         }
     }
 
-    /// Repair the hydraulics; the start-up of III.6 then restores the pressure.
     pub fn repair_hydraulics(&mut self) {
         self.pump = true;
     }
 
-    /// Cut the pressure and light FAULT RESET. Without control power both are already off.
     pub(super) fn fault(&mut self, cause: Cut) {
         if self.stage != Stage::Dark {
             self.shut_off(Stage::Faulted, cause);

@@ -1,7 +1,5 @@
-//! Messages of the controller, and visible events of the robot.
-//!
-//! Texts of the controller's screen are those of the manual (IV.3.3, A 2.3, A 2.4); texts of other events give
-//! their source in brackets.
+//! Messages of the controller, and visible events of the robot. Texts of the screen are those of the manual (IV.3.3, A
+//! 2.3, A 2.4).
 
 use std::fmt;
 
@@ -20,16 +18,13 @@ pub const HOME_TOLERANCE: i32 = 4;
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Message {
     Aligned([bool; 6]),
-    /// Screen: a warning or an error.
     Warning(#[serde(with = "crate::image::record")] Warning),
-    /// The lamps on the console or on the robot.
     Lamps(Lamps),
     Robot(RobotEvent),
     /// The position, and its greatest deviation from HOME.
     Position(#[serde(with = "crate::image::record")] WireFrame),
     /// The DEPC function has begun and reported the position.
     Reported(#[serde(with = "crate::image::record")] Plate),
-    /// The DEPC function has ended without an error.
     Ended,
     /// The controller runs a function on arrival (A 2.3).
     Function([u8; 2]),
@@ -40,30 +35,24 @@ pub enum Message {
 pub enum Lamps {
     PowerOn,
     PowerOff,
-    /// A fault has turned the hydraulics off.
     Fault,
     FaultReset,
     HydraulicsEnabled,
     HydraulicsDisabled,
 }
 
-/// A visible event of the robot.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub enum RobotEvent {
-    /// The actuators have lost their pressure.
     Sinks(Cut),
     WillJump,
     /// The arm has jumped to the command of the servos.
     Jumped {
-        /// Distance that the hand has moved, in.
-        inches: f64,
+        inches: f64, // distance that the hand has moved, in
     },
     /// The robot makes the vertical motions of its program (IV.3.3 step 12).
     VerticalMotions,
     Interrupted,
-    /// The robot moves to HOME by itself.
     GoesHome,
-    /// The controller waits for a motion by hand.
     PreManual,
 }
 
@@ -160,7 +149,6 @@ pub fn explained(warning: Warning) -> String {
     format!("{} ({meaning})", screen(warning).0)
 }
 
-/// Code and problem as in the table of appendix A.
 fn screen(warning: Warning) -> (&'static str, &'static str) {
     match warning {
         Warning::None => ("", ""),

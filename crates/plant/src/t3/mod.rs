@@ -7,13 +7,9 @@
 //!                                        bytes to and from the host, once a period
 //! ```
 //!
-//! [`T3Controller::step`] is a period of the controller; [`T3Controller::advance`] lets time pass for the arm,
-//! in steps chosen by the caller. `rcs-cell` adds a pseudo-terminal and a console, and [`crate::cell`] the rest
-//! of the simulated cell.
-//!
-//! The DEPC function is a part of the program, and the program runs only under pressure: without pressure no answers
-//! are sent, and the controller's DTR is off (A 2.3; ASSUMED: the manual does not describe the effect of an emergency
-//! stop on the host). The steps of IV.3.3 restore it: fault reset, hydraulics, manual, align, AUTO, cycle start.
+//! [`T3Controller::step`] is a period of the controller; [`T3Controller::advance`] lets time pass for the arm. The
+//! program, with the DEPC function, runs only under pressure; without it the controller's DTR is off (A 2.3; ASSUMED:
+//! the manual does not describe the effect of an emergency stop on the host).
 
 mod key;
 mod keys;
@@ -57,15 +53,13 @@ const LEFT_OFF: f64 = 2.0;
 /// Greatest error of an operator who aligns a joint to its arrow, degrees (ASSUMED).
 const BY_EYE: f64 = 0.5;
 
-/// Screen text while FAULT RESET is lit: after power-up (IV.1 step 2), and ASSUMED the same after an emergency stop,
-/// for which the manual mentions an error code (IV.3.1).
+/// Screen text while FAULT RESET is lit (IV.1 step 2; ASSUMED also after an emergency stop, IV.3.1).
 const FAULT: &str = "ERROR-E22";
 
 const fn powered() -> bool {
     true
 }
 
-/// Inputs from the line in a period.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StepInputs {
     pub rx: LinkBytes,
@@ -81,7 +75,6 @@ pub struct StepOutputs {
     pub busy: bool,
 }
 
-/// Counts since the start.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Counts {
     pub moves: u64,
@@ -89,13 +82,10 @@ pub struct Counts {
     pub reports: u64,
 }
 
-/// Errors of moving the arm to a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DriveError {
-    /// The position is out of range of the controller's words.
     #[error("the position is beyond the controller's coordinates of 327.67 in")]
     OutOfRange,
-    /// The joints cannot reach the position.
     #[error("the arm cannot take the position: {0:?}")]
     Joints(JointProblem),
     #[error("the arm has no hydraulic pressure")]
@@ -143,8 +133,7 @@ pub struct T3Controller {
     pump_delay: f64,
     noise: Noise,
     aligned: [bool; 6],
-    /// Axes that are moving to their arrow.
-    aligning: [bool; 6],
+    aligning: [bool; 6], // axes that are moving to their arrow
     since: f64,
     /// Position of the hand when the pressure returned, in, for the message.
     before_jump: Option<[f64; 3]>,
@@ -155,18 +144,14 @@ pub struct T3Controller {
     /// Keys for the next step of the function.
     #[serde(with = "crate::image::record")]
     keys: ControllerInputs,
-    /// The RS232 board is in its slot.
-    board: bool,
+    board: bool, // the RS232 board is in its slot
     transmitter: bool,
-    /// The emergency stops that are pressed.
-    estops: [bool; 5],
+    estops: [bool; 5], // the emergency stops that are pressed
     /// The Prim Interface Box has power. Only the console of `rcs-cell` removes it, so every saved cell has it.
     #[serde(skip, default = "powered")]
     prim_box: bool,
-    /// The pump and its lines work.
-    pump: bool,
-    /// Cause of the loss of pressure; `None` under pressure.
-    cut: Option<Cut>,
+    pump: bool,       // the pump and its lines work
+    cut: Option<Cut>, // cause of the loss of pressure; `None` under pressure
     counts: Counts,
     messages: Vec<Message>,
 }
@@ -182,10 +167,8 @@ impl T3Controller {
     }
 
     /// A controller after its start-up: the axes are aligned, the arm is at `start` (radians), and the program enters
-    /// the DEPC function with the first step.
-    ///
-    /// # Errors
-    /// [`DriveError::OutOfRange`] if the end plate is out of range of the words of the line.
+    /// the DEPC function with the first step. Fails with [`DriveError::OutOfRange`] if the end plate is out of range of
+    /// the words of the line.
     pub fn started(
         limits: Limits,
         actuators: &Actuators,
@@ -257,13 +240,11 @@ impl T3Controller {
         self.aligned
     }
 
-    /// True if hold is on.
     #[must_use]
     pub fn hold(&self) -> bool {
         self.keys.hold
     }
 
-    /// True if an emergency stop is pressed.
     #[must_use]
     pub fn is_pressed(&self, site: EStop) -> bool {
         self.estops[usize::from(site.code())]
@@ -275,14 +256,12 @@ impl T3Controller {
         self.cut
     }
 
-    /// True if the arm is at rest at its commanded position.
     #[must_use]
     pub fn at_rest(&self) -> bool {
         self.arm.settled()
     }
 
-    /// True while an action that a key has started is in progress and ends by itself: pressure builds up, axes are
-    /// being aligned, the arm moves to HOME, or the program makes its two motions.
+    /// True while an action that a key has started is in progress and ends by itself.
     #[must_use]
     pub fn busy(&self) -> bool {
         match self.stage {
@@ -292,7 +271,6 @@ impl T3Controller {
         }
     }
 
-    /// Counts since the start.
     #[must_use]
     pub fn counts(&self) -> Counts {
         self.counts
@@ -332,11 +310,8 @@ impl T3Controller {
         StepOutputs::default()
     }
 
-    /// Move the arm to an end-plate frame (inches, world) within a period as with the teach pendant, without the line
-    /// and its speed limits.
-    ///
-    /// # Errors
-    /// [`DriveError`]; the command is unchanged.
+    /// Move the arm to an end-plate frame (in, world) within a period, without the line's limits. On error, the command
+    /// is unchanged.
     pub fn drive(&mut self, plate: &Frame) -> Result<(), DriveError> {
         if !self.arm.has_pressure() {
             return Err(DriveError::NoPressure);
@@ -347,9 +322,7 @@ impl T3Controller {
         Ok(())
     }
 
-    /// Follow the position of another robot within a period. An arm without pressure does not move.
-    ///
-    /// # Errors
+    /// Follow the position of another robot within a period. An arm without pressure does not move. Fails with
     /// [`JointProblem`] if this arm cannot reach the position; the command is unchanged.
     pub fn follow(&mut self, plate: &Plate) -> Result<(), JointProblem> {
         if self.arm.has_pressure() && *plate != self.set_point.plate {

@@ -15,8 +15,7 @@ use super::{Cut, Message, RobotEvent, SetPoint, Stage, StepInputs, StepOutputs, 
 const OWN_SPEED: f64 = 10.0;
 /// Height of the two short vertical motions of the program, up and down again, in (ASSUMED).
 const VERTICAL_IN: f64 = 1.0;
-/// Duration of each of them, s (ASSUMED).
-const VERTICAL_S: f64 = 0.5;
+const VERTICAL_S: f64 = 0.5; // duration of each of them, s (ASSUMED)
 
 impl T3Controller {
     pub(super) fn end_program(&mut self, stage: Stage) {
@@ -69,7 +68,6 @@ impl T3Controller {
         self.messages.push(Message::Aligned(self.aligned));
     }
 
-    /// Move up and down, then enter the DEPC function.
     pub(super) fn rehearse(&mut self, inputs: &StepInputs) -> StepOutputs {
         self.motions += 1;
         let mut raised = T3.forward(&HOME_JOINTS);
@@ -78,7 +76,6 @@ impl T3Controller {
             (1, Ok(up)) => self.arm.reach(up, VERTICAL_S),
             (2, _) => self.arm.reach(HOME_JOINTS, VERTICAL_S),
             _ => {
-                // HOME is well within the range of the words of the line.
                 if let Ok(home) = SetPoint::at(&HOME_JOINTS) {
                     self.set_point = home;
                 }

@@ -1,5 +1,3 @@
-//! Reasons for which a key has no effect.
-
 use interfaces::station::EStop;
 
 /// Refusal of a key that was pressed at the wrong time, with the missing step (IV.3.3).
@@ -9,24 +7,18 @@ pub enum Refusal {
     NoPower,
     #[error("control power is on already")]
     PowerIsOn,
-    /// A board cannot be changed under power.
     #[error("boards are changed without power: control power off comes first")]
     Powered,
     #[error("the FAULT RESET button is lit: fault reset comes first")]
     Fault,
-    /// An emergency stop is still pressed.
     #[error("the E-stop {} is still in: release it first", .0.place())]
     Pressed(EStop),
-    /// The E-stop is not pressed.
     #[error("the E-stop {} is not pressed", .0.place())]
     NotPressed(EStop),
-    /// FAULT RESET is not lit.
     #[error("the FAULT RESET button is not lit: there is nothing to reset")]
     NoFault,
-    /// The keyswitch is not at ENABLE.
     #[error("the HYDRAULICS keyswitch is not at ENABLE: hydraulics enable comes first")]
     NotEnabled,
-    /// The keyswitch is already in that position.
     #[error("the HYDRAULICS keyswitch is there already")]
     KeyIsThere,
     #[error("the robot's hydraulics are off: manual on comes first")]
@@ -35,7 +27,6 @@ pub enum Refusal {
     PressureIsOn,
     #[error("the robot moves: wait until it stands")]
     Moving,
-    /// An axis is not aligned.
     #[error("not all axes are aligned: align comes first")]
     NotAligned,
     /// Axes are aligned in manual mode only.
@@ -46,23 +37,19 @@ pub enum Refusal {
     JogInAuto,
     #[error("an axis from 1 to 6 was expected, found {0}")]
     NoAxis(u8),
-    /// The axis would turn beyond its limit.
     #[error("axis {0} would turn beyond its limit")]
     Limit(u8),
     /// The E-stop circuit is open: the Prim Interface Box has no power.
     #[error("the Prim Interface Box has no power: prim box on comes first (IV.1)")]
     PrimBoxOff,
-    /// The robot is not in auto mode.
     #[error("the robot is not in auto mode at HOME: auto comes first")]
     NotAuto,
     #[error("the program runs: interrupt it first")]
     Running,
     #[error("no program runs")]
     NotRunning,
-    /// A warning must be answered first.
     #[error("a warning is on the screen: answer it with enter, or with cancel twice")]
     Warned,
-    /// No warning requires an answer.
     #[error("there is no warning on the screen to answer")]
     NothingToAnswer,
     /// The error P-IG can only be cancelled.

@@ -1,5 +1,3 @@
-//! The steps of the start-up.
-
 use serde::{Deserialize, Serialize};
 
 /// Progress of the start-up.
@@ -24,13 +22,10 @@ use serde::{Deserialize, Serialize};
 pub enum Stage {
     Dark,
     Faulted,
-    /// No fault, the keyswitch is not at ENABLE.
     Ready,
-    /// The keyswitch is at ENABLE, the hydraulics are off.
     Enabled,
     /// The pump is starting; the pressure comes after a short delay.
     Rising,
-    /// Hydraulics on; the axes can be aligned.
     Manual,
     /// Moving to HOME after AUTO, or after the end of the program.
     Homing,

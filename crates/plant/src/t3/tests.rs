@@ -169,7 +169,7 @@ fn broken_transmitter_is_detected_at_the_next_answer() {
 }
 
 #[test]
-fn both_jumps_are_there() {
+fn arm_jumps_twice_during_start_up() {
     let mut t3 = t3();
     for key in [Key::ControlPower(true), Key::FaultReset, Key::Hydraulics(true), Key::Manual(true)] {
         t3.press(key).unwrap();
@@ -218,7 +218,6 @@ fn steps_out_of_order_are_refused_without_effect() {
         t3.press(all[done]).unwrap();
         pass(&mut t3, 4.0);
     }
-    // The last key pressed was `align`.
     assert_eq!(t3.press(Key::CycleStart), Err(Refusal::NotAuto));
     t3.press(Key::Auto).unwrap();
     assert_eq!(t3.press(Key::CycleStart), Err(Refusal::Moving));

@@ -16,7 +16,6 @@ use tape::{Beat, Tape};
 
 pub const CELL: &str = include_str!("../../../../data/cell.toml");
 
-/// Poses of the cell proposal, §4.
 pub const UT_1: Pose =
     Pose { wrist: [-6650, -550, 1600], tool: [-6650, -550, -1400], finger: [-6650, -3550, -1400] };
 pub const PFIX: Pose =
@@ -39,10 +38,8 @@ pub struct Rig {
     pub log: Vec<CellEvent>,
     pub count: u64,
     pub description: CellDescription,
-    /// The inputs of the cell, if the rig records them.
     pub tape: Option<Tape>,
-    /// Inputs of the next tick.
-    beat: Beat,
+    beat: Beat, // inputs of the next tick
     at: Frame,
 }
 
@@ -68,12 +65,10 @@ impl Rig {
         Self { cell, outputs, inputs, log: Vec::new(), count: 0, description, tape: None, beat, at }
     }
 
-    /// A rig that records the inputs of the cell.
     pub fn taped(description: &CellDescription, seed: u64) -> Self {
         Self { tape: Some(Tape::default()), ..Self::new(description, seed) }
     }
 
-    /// Execute a workstation action and record it.
     pub fn work(&mut self, action: WorkstationAction) {
         self.cell.workstation(&action).unwrap();
         self.beat.actions.push(action);
@@ -127,7 +122,6 @@ impl Rig {
         self.beat.plate = Some(plate);
     }
 
-    /// Move the tool and wait until the servos have settled.
     pub fn go_and_stop(&mut self, to: Frame, speed: f64) {
         self.go(to, speed);
         self.ticks(30);
@@ -147,7 +141,6 @@ impl Rig {
         panic!("the fingers find nothing to press on: {:?}", self.cell.fingers());
     }
 
-    /// Open to at least `opening` in.
     pub fn open(&mut self, opening: f64) {
         self.outputs.grip.bits = valve::SUPPLY | valve::OPEN_MEDIUM;
         for _ in 0..1000 {
@@ -175,7 +168,6 @@ impl Rig {
         panic!("the pedestal's hand finds nothing to press on: {:?}", self.cell.pedestal_fingers());
     }
 
-    /// Open the pedestal's hand to at least `opening` in.
     pub fn pedestal_open(&mut self, opening: f64) {
         self.outputs.pedestal_hand.bits = valve::SUPPLY | valve::OPEN_MEDIUM;
         for _ in 0..1000 {
@@ -203,8 +195,7 @@ impl Rig {
         panic!("the table turns on: {:?}", self.inputs.pedestal);
     }
 
-    /// Like the pedestal's controller: find the + limit, set the counter, turn to the angle at which the
-    /// fingers move across the radial line.
+    /// Like the pedestal's controller: find the + limit, set the counter, turn across the radial line.
     pub fn table_square(&mut self) {
         self.table(MotorOrder::Turn, 100_000);
         self.table(MotorOrder::SetCounter, 0);
@@ -219,7 +210,6 @@ impl Rig {
         self.ticks(20);
     }
 
-    /// The last part that was put down.
     pub fn part(&self) -> PartState {
         self.cell.parts().pop().unwrap()
     }
@@ -228,13 +218,11 @@ impl Rig {
         self.cell.part_frame(self.part().id).unwrap()
     }
 
-    /// Frame of the first part in the frame of the fixture.
     pub fn in_fixture(&self) -> Frame {
         PFIX.to_frame().unwrap().inverse().compose(&self.part_frame())
     }
 
-    /// The grip frame over a part in a tray as the controller computes it: LK-GRP-1 on the part's place, backed off by
-    /// `up` in.
+    /// The grip frame over a part in a tray: LK-GRP-1 on the part's place, backed off by `up` in.
     pub fn grip_frame(&self, sector: u16, x: f64, y: f64, angle: f64, up: f64) -> Frame {
         let sector = description().tray("UNIT_1").unwrap().sector(sector).unwrap();
         let place = Frame {
@@ -245,7 +233,6 @@ impl Rig {
         grip.shifted(Vector::new(-up, 0.0, 0.0))
     }
 
-    /// Pick the blank out of UNIT_1, sector 4.
     pub fn pick(&mut self, x: f64, y: f64, angle: f64, force: f64) {
         self.go(UNIT_V1.to_frame().unwrap(), 10.0);
         self.open(3.0);
@@ -255,7 +242,6 @@ impl Rig {
         self.go(self.grip_frame(4, x, y, angle, 8.0), 4.0);
     }
 
-    /// Move to the front of the fixture.
     pub fn carry(&mut self) {
         for via in [UNIT_V1, HOM_SAF_3, HOM_SAF_1, FIX_V1] {
             self.go(via.to_frame().unwrap(), 10.0);

@@ -12,19 +12,16 @@ use plant::{
 
 use super::{CELL, FIX_V1, FX1, HOLD, Rig, SEAT, description};
 
-/// Poses of the cell proposal, §4.
 pub const TOOL_V1: Pose =
     Pose { wrist: [2757, -2683, 2321], tool: [5597, -3497, 1800], finger: [5987, -1052, 105] };
 pub const TOOL_SAFE: Pose =
     Pose { wrist: [5298, -2322, 1559], tool: [8296, -2431, 1585], finger: [8357, -1417, -1238] };
 
-/// The cell with the tool gripper on the robot.
 pub fn with_tool_gripper() -> CellDescription {
     CellDescription::from_toml(&CELL.replace("mounted = \"parts\"", "mounted = \"tool\"")).unwrap()
 }
 
-/// Four blanks in a tray, three of them at random places; the fourth is picked, carried to the vise, dropped onto its
-/// ledge, gripped there while the vise closes, held, and pushed to the back.
+/// Four blanks in a tray; the fourth is picked, dropped into the vise, gripped while it closes, and pushed to the back.
 pub fn clamping(seed: u64) -> Rig {
     let mut rig = Rig::taped(&description(), seed);
     for sector in 1..=3 {
@@ -51,12 +48,10 @@ pub fn clamping(seed: u64) -> Rig {
     rig
 }
 
-/// Frame with the tool point on the axis of the drum, `x` in from its place.
 fn at_drum(rig: &Rig, x: f64) -> Frame {
     rig.description.drum.pose.frame().unwrap().shifted(Vector::new(x, 0.0, 0.0))
 }
 
-/// A tool in the drum, gripped by the robot; the fingers of the drum are open.
 fn gripped_in_drum(seed: u64) -> Rig {
     let mut rig = Rig::taped(&with_tool_gripper(), seed);
     rig.work(DrumTool { part: "ENDMILL-1".into() });
@@ -71,8 +66,7 @@ fn gripped_in_drum(seed: u64) -> Rig {
     rig
 }
 
-/// A tool is gripped in the drum, pulled half out against the detents, pushed back, and gripped by the fingers of the
-/// drum.
+/// A tool is gripped in the drum, pulled half out against the detents, pushed back, and gripped by the drum.
 pub fn drumming(seed: u64) -> Rig {
     let mut rig = gripped_in_drum(seed);
     rig.go_and_stop(at_drum(&rig, -0.2), 0.1);
@@ -83,7 +77,6 @@ pub fn drumming(seed: u64) -> Rig {
     rig
 }
 
-/// A tool taken out of the drum, in the tool gripper.
 pub fn with_tool_in_hand(seed: u64) -> Rig {
     let mut rig = gripped_in_drum(seed);
     rig.go_and_stop(at_drum(&rig, -6.0), 0.5);

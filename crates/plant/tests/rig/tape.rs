@@ -4,11 +4,9 @@ use geometry::frame::Frame;
 use interfaces::device::DeviceOutputs;
 use plant::{Cell, WorkstationAction};
 
-/// The inputs of a cell in one tick.
 #[derive(Clone, Debug, Default)]
 pub struct Beat {
     pub actions: Vec<WorkstationAction>,
-    /// The end-plate frame to which the arm was driven.
     pub plate: Option<Frame>,
     pub outputs: DeviceOutputs,
 }
@@ -26,11 +24,9 @@ impl Beat {
     }
 }
 
-/// All ticks of a run.
 #[derive(Debug, Default)]
 pub struct Tape {
     pub beats: Vec<Beat>,
-    /// Digest of the cell after each tick.
     pub digests: Vec<u64>,
 }
 
@@ -40,7 +36,6 @@ impl Tape {
         self.digests.push(cell.digest());
     }
 
-    /// One digest of all ticks.
     pub fn chain(&self) -> u64 {
         let mut chain = rcs_core::digest::Digest::new();
         self.digests.iter().for_each(|digest| chain.add(&digest.to_le_bytes()));

@@ -56,14 +56,12 @@ impl Check<'_> {
         });
     }
 
-    /// Some keys of a table must be more than 0.
     pub(super) fn positive(&mut self, table: &str, values: &[(&str, f64)]) {
         for (key, value) in values {
             self.above_zero(join(table, key), *value);
         }
     }
 
-    /// All elements of an array must be more than 0.
     pub(super) fn all_positive(&mut self, array: &str, values: &[f64]) {
         for (number, value) in values.iter().enumerate() {
             self.above_zero(element(array, number), *value);

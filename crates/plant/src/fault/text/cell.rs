@@ -17,9 +17,7 @@ pub(super) struct Kind {
     when: &'static [&'static str],
 }
 
-/// Keys for the time of a fault with a duration.
 const LASTING: [&str; 6] = ["at", "from", "after", "until", "rate", "ticks"];
-/// Keys for the time of a fault of a delivery.
 const DELIVERY: [&str; 5] = ["at", "from", "after", "until", "rate"];
 
 const fn lasting(name: &'static str, keys: &'static [&'static str]) -> Kind {
@@ -48,18 +46,13 @@ const KINDS: [Kind; 16] = [
     delivery("wrong-part", &["object", "part"]),
     Kind { name: "pedestal-moved", keys: &["x", "y", "angle"], when: &[] },
 ];
-/// Devices that can be stuck, other than sensors and valves.
 const DEVICES: [&str; 2] = ["lock-ring", "vise-jaw"];
-/// The longest duration of a fault with a rate, ticks.
-const MOST_TICKS: u32 = 100_000;
-/// The longest delay of a sensor, ticks.
-const MOST_LATE: f64 = 1000.0;
-/// The greatest noise, offset or drift, counts.
-const MOST_COUNTS: f64 = 100_000.0;
+const MOST_TICKS: u32 = 100_000; // the longest duration of a fault with a rate, ticks
+const MOST_LATE: f64 = 1000.0; // the longest delay of a sensor, ticks
+const MOST_COUNTS: f64 = 100_000.0; // the greatest noise, offset or drift, counts
 const MOST_ASIDE: f64 = 100.0;
 
 impl Kind {
-    /// The keys that it can have.
     pub(super) fn takes(&self) -> Vec<&'static str> {
         self.keys.iter().chain(self.when).copied().collect()
     }
@@ -73,7 +66,6 @@ pub(super) fn kind(name: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.name == name)
 }
 
-/// The fault that an entry describes.
 pub(super) fn fault(entry: &Entry<'_>, kind: &Kind, cell: &CellDescription) -> Result<Fault, Box<Problem>> {
     let what = what(entry, kind.name, cell)?;
     Ok(Fault { number: entry.number, what, when: when(entry)? })
@@ -139,7 +131,6 @@ fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, B
 
 const ONE_OF: &str = "needs one of `sensor`, `valve` and `device`";
 
-/// The stuck device or valve, if it is not a sensor.
 fn stuck(entry: &Entry<'_>) -> Result<What, Box<Problem>> {
     let form = entry.form;
     match (&form.valve, &form.device) {
@@ -175,7 +166,6 @@ fn part(entry: &Entry<'_>, key: &str, name: &str, cell: &CellDescription) -> Res
     Ok(part.name.clone())
 }
 
-/// The count at which a sensor is stuck.
 fn counts(entry: &Entry<'_>, value: &Value) -> Result<i64, Box<Problem>> {
     let range = match &entry.form.sensor {
         Some(name) => sensor(entry, name)?.range(),

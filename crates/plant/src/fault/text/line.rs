@@ -16,13 +16,11 @@ pub(super) fn kind(name: &str) -> Option<FaultKind> {
     FaultKind::ALL.iter().copied().find(|kind| kind.text() == name)
 }
 
-/// A plan without rules.
 pub(super) fn empty(seed: u64, most_per_tick: Option<u8>) -> Plan {
     let plan = Plan::new(seed);
     most_per_tick.map_or(plan, |most| plan.most_per_tick(most))
 }
 
-/// The rule that an entry describes.
 pub(super) fn rule(entry: &Entry<'_>, kind: FaultKind) -> Result<Rule, Box<Problem>> {
     let form = entry.form;
     let mut rule = Rule::new(kind);
