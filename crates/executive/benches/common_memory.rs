@@ -1,5 +1,5 @@
-//! Cost of common memory: a buffer compared with a bare blackboard of iceoryx2, and a tick without publishing, with it,
-//! and with attached readers. Each line is the median of rounds, so that a stall of the machine has no effect.
+//! Cost of common memory: a buffer against a bare blackboard of iceoryx2, and a tick without and with publishing and
+//! readers. Lines are medians of rounds, so that a stall of the machine has no effect.
 
 #![expect(clippy::print_stdout, reason = "figures are what it is for")]
 
@@ -24,12 +24,10 @@ use levels::ladder::PROCESS_COUNT;
 use rcs_core::tick::Tick;
 use taskdata::files::TaskData;
 
-/// Size of a bare value, bytes: about that of a medium-sized buffer.
-const BARE: usize = 128;
+const BARE: usize = 128; // size of a bare value, bytes: about that of a medium-sized buffer
 const ROUNDS: usize = 101;
 const CALLS: u32 = 200;
 
-/// Print the time of a call, divided by `parts`.
 fn measure(what: &str, parts: usize, mut call: impl FnMut()) {
     let mut rounds: Vec<Duration> = (0..ROUNDS)
         .map(|_| {
@@ -42,7 +40,6 @@ fn measure(what: &str, parts: usize, mut call: impl FnMut()) {
     println!("{what:<48} {:>9.1} ns", rounds[ROUNDS / 2].as_secs_f64() * 1e9 / parts as f64);
 }
 
-/// Writes all buffers of a run at once; the time is divided by their number.
 fn buffers() {
     let name = RunName::unique("bench-buffers");
     let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
@@ -59,7 +56,6 @@ fn buffers() {
     });
 }
 
-/// The same with iceoryx2 alone.
 fn bare() {
     set_log_level(LogLevel::Fatal);
     let node = NodeBuilder::new().create::<ipc::Service>().expect("a node");

@@ -9,7 +9,6 @@ use executive::egm::{EgmOptions, Line, Order, Placement};
 const TICK_NS: u64 = 40_000_000;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // The network loses one datagram in a hundred, as a shared network does.
     let options: EgmOptions = "sim,loss=1".parse()?;
     let mut line = Line::Simulated(Box::new(options.simulated(&Placement::default())));
     let mut from: Option<Pose> = None;

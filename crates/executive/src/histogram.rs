@@ -1,13 +1,10 @@
 //! Times of ticks in a fixed number of buckets, so that a run of any length needs no allocation.
 
-/// Buckets per octave: a percentile is accurate to 1/32, about 3 %.
-const PER_OCTAVE: u64 = 32;
-/// Number of octaves above the linear part: up to 2^5 * 2^30 ns, half a minute.
-const OCTAVES: usize = 30;
+const PER_OCTAVE: u64 = 32; // buckets per octave: a percentile is accurate to 1/32, about 3 %
+const OCTAVES: usize = 30; // number of octaves above the linear part: up to 2^5 * 2^30 ns, half a minute
 const BUCKETS: usize = (OCTAVES + 1) * 32;
 
-/// A histogram of durations in nanoseconds: exact below 32 ns, then 32 buckets per octave; longer durations than half a
-/// minute are in the last bucket.
+/// Durations in ns: exact below 32 ns, then 32 buckets per octave; the last bucket has those over half a minute.
 #[derive(Clone)]
 pub struct Histogram {
     counts: [u64; BUCKETS],
@@ -15,7 +12,6 @@ pub struct Histogram {
     max: u64,
 }
 
-/// Summary of a histogram, in microseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Summary {
     /// Half of the values are at most this.
@@ -43,8 +39,7 @@ impl Histogram {
         self.total
     }
 
-    /// The value, in nanoseconds, that `permille` of 1000 values do not exceed: the upper edge of its bucket, at most
-    /// the largest value. 0 without values.
+    /// The ns that `permille` of 1000 values do not exceed: the upper edge of the bucket. 0 without values.
     #[must_use]
     pub fn quantile(&self, permille: u64) -> u64 {
         let wanted = (self.total * permille.min(1000)).div_ceil(1000);
@@ -58,7 +53,6 @@ impl Histogram {
         self.max
     }
 
-    /// Median, p99 and maximum in microseconds.
     #[must_use]
     pub fn summary(&self) -> Summary {
         let microseconds = |nanoseconds: u64| nanoseconds as f64 / 1000.0;
@@ -94,7 +88,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn nothing_gives_zeros() {
+    fn empty_histogram_is_zero() {
         assert_eq!(Histogram::default().summary(), Summary::default());
     }
 

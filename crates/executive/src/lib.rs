@@ -1,11 +1,9 @@
 //! Runs the levels: clocks, boards, common memory, real-time set-up.
 //!
-//! The control processes are pure state machines; [`closed_loop::course`] steps them with tick-parity buffers, and this
-//! crate runs a course. [`runner`] times the steps and publishes the buffers, [`clock`] determines
-//! when each tick begins, [`realtime`] requests real-time priority from the system, [`timing`] measures the parts of a
-//! tick, [`overrun`] reacts to skipped slots, [`alloc`] counts allocations, [`boards`] distributes the processes over
-//! operating system processes, [`memory`] publishes the buffers in shared memory, and [`status`] summarises them.
-//! Lines to robots at ports are [`serial`], to a T3, and [`mod@egm`], to a robot with ABB's Externally Guided Motion;
+//! [`closed_loop::course`] steps the control processes with tick-parity buffers, and this crate runs a course.
+//! [`runner`] times the steps and publishes the buffers, [`clock`] and [`overrun`] determine when ticks begin,
+//! [`realtime`] requests real-time priority, [`boards`] distributes the processes over operating system processes,
+//! [`memory`] publishes the buffers in shared memory. Lines to robots are [`serial`], to a T3, and [`mod@egm`];
 //! [`field`] has the devices behind Modbus couplers.
 
 #![deny(unsafe_code)]

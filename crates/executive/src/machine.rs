@@ -6,8 +6,7 @@ use std::{fmt, fs};
 pub struct Machine {
     /// Release of the kernel, or the reason why it is unknown.
     pub kernel: String,
-    /// True if the kernel has full preemption (PREEMPT_RT).
-    pub preempt_rt: bool,
+    pub preempt_rt: bool, // full preemption
     /// Frequency governors of the cores, without duplicates; empty if the machine has none.
     pub governors: Vec<String>,
 }

@@ -1,10 +1,8 @@
 //! The reaction to skipped slots of the 40 ms grid.
 //!
-//! A skipped slot is always counted, with its cause: a part of the previous tick that took too long, or a late wake-up
-//! by the system. The user chooses the further reaction ([`Policy`]): none; the robot holds until ticks are on time
-//! again; or it comes to rest and the run ends. To hold, the velocity knob is set to zero: Prim ramps down on its path
-//! and keeps the position (docs/design/motion.md "Knob"), and every grip stays as it is. The knob is an input of the
-//! controller like any other, so it is logged, and a replay needs no clock.
+//! A skipped slot is counted with its cause. The user chooses the further reaction ([`Policy`]). To hold, the velocity
+//! knob is set to zero: Prim ramps down on its path (docs/design/motion.md "Knob"), and every grip stays. The knob is
+//! logged like any other input, so a replay needs no clock.
 
 use std::{fmt, str::FromStr, time::Duration};
 
@@ -21,7 +19,6 @@ pub const PUNCTUAL: u32 = 25;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Policy {
-    /// They are only counted.
     #[default]
     Count,
     /// If at least this many are skipped in a row, the robot holds until [`PUNCTUAL`] ticks were on time.
@@ -60,12 +57,10 @@ impl fmt::Display for Policy {
     }
 }
 
-/// Slots that were skipped in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Overrun {
     pub slots: u64,
-    /// The part of the previous tick that took longest; `None` if that tick ended in time and the thread was woken too
-    /// late.
+    /// The slowest part of the previous tick; `None` if that was in time and the thread was woken too late.
     pub part: Option<Stage>,
     /// Duration of that part, or delay of the wake-up.
     pub taken: Duration,
@@ -96,7 +91,6 @@ enum Reaction {
     },
 }
 
-/// Counts skipped slots and applies the policy.
 pub struct Overruns {
     policy: Policy,
     waking: u64,
@@ -106,7 +100,6 @@ pub struct Overruns {
 }
 
 impl Overruns {
-    /// No slot has been skipped yet.
     #[must_use]
     pub fn new(policy: Policy) -> Self {
         Self {
@@ -118,9 +111,8 @@ impl Overruns {
         }
     }
 
-    /// Call at the beginning of a tick: `slots` were skipped before it, `stage_times` are those of the previous tick,
-    /// and the thread woke `late` after the beginning of the slot that it waited for. Returns the overrun, if there is
-    /// one.
+    /// Call at the beginning of a tick, with the skipped slots before it, the times of the previous tick, and the delay
+    /// of the wake-up.
     pub fn observe(&mut self, slots: u64, stage_times: &StageTimes, late: Duration) -> Option<Overrun> {
         if slots == 0 {
             if let Reaction::Holding { punctual } = &mut self.reaction {
@@ -163,7 +155,6 @@ impl Overruns {
         }
     }
 
-    /// The velocity knob for the controller.
     #[must_use]
     pub const fn knob(&self, knob: u16) -> u16 {
         match self.reaction {
@@ -186,8 +177,7 @@ impl Overruns {
         (self.rest.is_at_rest() || *ticks >= AT_LAST).then_some(*because)
     }
 
-    /// Number of skipped slots by cause: `None` for a late wake-up by the system. Parts without skipped slots are left
-    /// out.
+    /// Number of skipped slots by cause, if any: `None` for a late wake-up by the system.
     pub fn by_part(&self) -> impl Iterator<Item = (Option<Stage>, u64)> {
         let parts = self.parts.iter().map(|(part, count)| (Some(*part), *count));
         std::iter::once((None, self.waking)).chain(parts).filter(|(_, count)| *count > 0)
@@ -235,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn the_part_that_took_longest_or_the_system_is_to_blame() {
+    fn overrun_has_the_longest_part_or_the_system_as_cause() {
         let mut overruns = Overruns::new(Policy::Count);
         let (slow, quick) = (stage_times(Duration::from_millis(41)), stage_times(Duration::ZERO));
         let overrun = overruns.observe(2, &slow, LATE).expect("slots were skipped");
@@ -291,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_never_rests_does_not_keep_the_run_from_ending() {
+    fn run_ends_although_the_robot_never_rests() {
         let mut overruns = Overruns::new(Policy::Stop(1));
         overruns.observe(1, &stage_times(Duration::ZERO), LATE);
         let ticks = (0..1000).find(|&tick| {

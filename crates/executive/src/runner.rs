@@ -1,9 +1,7 @@
 //! Times the ticks of a [`Course`], and can publish their buffers in shared memory.
 //!
-//! A tick takes some microseconds if its code and its data are in the caches, and ten times as long if they are not;
-//! within the 40 ms between two ticks they are evicted. The processes are pure state machines, so a tick can be *warmed
-//! up* ([`Runner::warm_up`]): a copy of the ladder runs it on the present buffers, and the result is discarded. Caches,
-//! translation buffers and branch predictor are then warm.
+//! A tick takes ten times as long if its code and data are not in the caches, from which they are evicted within 40 ms.
+//! So a tick can be *warmed up* ([`Runner::warm_up`]): a copy of the ladder runs it, and the result is discarded.
 
 use interfaces::ExternalInputs;
 
@@ -18,14 +16,11 @@ use closed_loop::course::{Course, Levels};
 pub struct Runner<L> {
     times: Box<Histogram>,
     stage_times: StageTimes,
-    /// The copy of the ladder for warm-ups; the first warm-up creates it.
-    shadow: Option<Box<L>>,
+    shadow: Option<Box<L>>, // the copy of the ladder for warm-ups; the first warm-up creates it
     publisher: Option<Publisher>,
-    /// The external inputs published last, for warm-ups.
-    published: Box<ExternalInputs>,
+    published: Box<ExternalInputs>, // the external inputs published last, for warm-ups
     allocations_at_start: u64,
-    /// Allocations by processes that run elsewhere.
-    elsewhere: u64,
+    elsewhere: u64, // allocations by processes that run elsewhere
     last_ns: u64,
 }
 
@@ -45,15 +40,9 @@ impl<L> Runner<L> {
         }
     }
 
-    /// Run the next tick of a course on its external inputs. `skipped` is the number of slots of the grid that were
-    /// skipped so far; it is published, and has no other effect.
-    ///
-    /// Allocations are counted from here to the end of the call. The controller's time includes the processes and
-    /// publishing; it excludes the digest, the watch for failures and the copies for the status and for warm-ups, which
-    /// belong to the bookkeeping of a run.
-    ///
-    /// # Errors
-    /// Errors of the levels. The tick does not count then, and common memory stays as after the previous tick.
+    /// Run the next tick of a course on its external inputs; `skipped` is published only. Allocations are counted from
+    /// here to the end of the call. The controller's time includes publishing; it excludes digest, watch for failures,
+    /// and copies. After an error, common memory stays as after the previous tick.
     pub fn step<Data: ?Sized>(
         &mut self,
         course: &mut Course<L>,
@@ -96,10 +85,8 @@ impl<L> Runner<L> {
         Ok(())
     }
 
-    /// Run the next tick of a course on a copy of its levels and discard the result: see the head of this module. It
-    /// changes nothing that another process can see; it publishes the last buffers once more. Call it between two ticks, when there is time.
-    ///
-    /// The first warm-up creates the copy, which allocates; later ones do not allocate.
+    /// Run the next tick on a copy of the levels and discard the result. It publishes the last buffers once more. Call
+    /// it between two ticks. Only the first warm-up allocates.
     pub fn warm_up<Data: ?Sized>(&mut self, course: &mut Course<L>, external: &ExternalInputs, data: &Data)
     where
         L: Levels<Data>,
@@ -120,19 +107,16 @@ impl<L> Runner<L> {
         &mut self.stage_times
     }
 
-    /// Times of the parts of a tick.
     #[must_use]
     pub const fn stage_times(&self) -> &StageTimes {
         &self.stage_times
     }
 
-    /// Times of the controller part of all ticks.
     #[must_use]
     pub const fn times(&self) -> &Histogram {
         &self.times
     }
 
-    /// Duration of the controller part of the last tick, ns.
     #[must_use]
     pub const fn last_ns(&self) -> u64 {
         self.last_ns
@@ -144,14 +128,12 @@ impl<L> Runner<L> {
         alloc::is_installed().then(|| alloc::allocations() - self.allocations_at_start + self.elsewhere)
     }
 
-    /// The writer of shared memory, if there is one.
     #[must_use]
     pub const fn publisher(&self) -> Option<&Publisher> {
         self.publisher.as_ref()
     }
 
-    /// Publish the simulated cell after a tick to other programs; `view` is called if the run is published. Does not
-    /// allocate.
+    /// Publish the simulated cell after a tick; `view` is called if the run is published. Does not allocate.
     pub fn show_cell<'a>(&mut self, view: impl FnOnce() -> &'a CellView) {
         if let Some(publisher) = &mut self.publisher {
             publisher.show_cell(view());

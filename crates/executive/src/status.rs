@@ -1,5 +1,4 @@
-//! Summary of a run: for each process its command, its status and the row that fired, and the executive's counts.
-//! Monitors print it; it is mirrored for programs that cannot read the buffers ([`crate::memory::Mirror`]).
+//! Summary of a run, printed by monitors and mirrored ([`crate::memory::Mirror`]).
 
 use std::fmt;
 
@@ -16,23 +15,17 @@ use closed_loop::failure::command;
 pub struct ProcessStatus {
     /// The manual's name.
     pub process: &'static str,
-    /// Its present command; empty for none.
-    pub command: String,
+    pub command: String, // empty for none
     pub status: &'static str,
     /// What no sensor confirms about its finished command; empty if the sensors confirm the goal.
     pub unconfirmed: &'static str,
-    /// Its decision table; `None` if it has not used one yet.
     pub table: Option<&'static str>,
     /// The row that fired; `None` if none has fired yet.
     pub row: Option<u8>,
-    /// Step of its command after that row; empty if there is none.
-    pub step: String,
-    /// True if it was not stepped: dormant or held.
-    pub suspended: bool,
-    /// True if it runs in another system.
-    pub elsewhere: bool,
-    /// True if it has not written in this tick.
-    pub lost: bool,
+    pub step: String,    // of its command after that row; may be empty
+    pub suspended: bool, // not stepped: dormant or held
+    pub elsewhere: bool, // runs in another system
+    pub lost: bool,      // has not written in this tick
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -41,24 +34,18 @@ pub struct Status {
     /// The announced state of the run, as a phrase after its name; `None` if it runs, or if its state is unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub phase: Option<String>,
-    /// The tick that was run last.
-    pub tick: u64,
+    pub tick: u64, // the last one
     pub simulated_s: f64,
-    /// Number of slots of the 40 ms grid that were skipped.
-    pub skipped: u64,
-    /// Heap allocations of the controller since the start.
-    pub allocations: u64,
-    /// Time that the controller took for the tick, microseconds.
-    pub controller_us: f64,
-    /// True if the run is over.
-    pub over: bool,
-    /// Fault of the line to the robot; `None` if there is none.
+    pub skipped: u64,       // slots of the 40 ms grid
+    pub allocations: u64,   // of the controller since the start
+    pub controller_us: f64, // time that the controller took for the tick, microseconds
+    pub over: bool,         // the run is over
+    /// Fault of the line to the robot; if any.
     pub link: Option<&'static str>,
     pub processes: Vec<ProcessStatus>,
 }
 
 impl Status {
-    /// The status after a tick.
     #[must_use]
     pub fn of(run: &str, external: &ExternalInputs, memory: &CommonMemory, pulse: &Pulse) -> Self {
         let processes = ProcessId::ALL.iter().zip(Ladder::processes()).map(|(&id, info)| {
@@ -91,7 +78,6 @@ impl Status {
     }
 }
 
-/// True for a process that can run in another system.
 const fn of_pedestal(process: ProcessId) -> bool {
     matches!(process, ProcessId::Pedestal | ProcessId::Hand | ProcessId::RotaryTable)
 }
@@ -150,7 +136,7 @@ mod tests {
     use rcs_core::{name::Name16, tick::Tick};
 
     #[test]
-    fn every_process_is_described_in_its_own_words() {
+    fn status_describes_every_process() {
         let (mut external, mut memory) = (ExternalInputs::default(), CommonMemory::default());
         external.hws.command = Name16::clipped("PAUSE");
         memory.subtask.emove.command = EmoveVerb::Pause;

@@ -1,9 +1,7 @@
 //! Times of the parts of a tick.
 //!
-//! A tick is a sequence of parts; the code that has finished a part calls [`StageTimes::mark`], which takes the time
-//! since the end of the previous part. The times are summed up only at the end of the tick ([`StageTimes::finish`]), so
-//! that each part costs one read of the clock. If slots of the grid were skipped, [`StageTimes::worst`] returns the
-//! part that caused it.
+//! The code that has finished a part calls [`StageTimes::mark`]: one read of the clock per part. The times are summed
+//! up at the end of the tick ([`StageTimes::finish`]).
 
 use std::{fmt, time::Instant};
 
@@ -11,7 +9,6 @@ use levels::ladder::{PROCESS_COUNT, ProcessId};
 
 use crate::histogram::{Histogram, Summary};
 
-/// A part of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Receive from a serial line, exchange of task data, and log entries before the controller runs.
@@ -19,12 +16,10 @@ pub enum Stage {
     Process(ProcessId),
     /// Common memory: carried over from the previous tick, and published.
     Buffers,
-    /// Digest, and the watch for failures.
     Bookkeeping,
     Line,
     Log,
     Cell,
-    /// Workstation controller, Data System, progress line.
     Workstation,
 }
 
@@ -75,7 +70,6 @@ impl fmt::Display for Stage {
     }
 }
 
-/// Stopwatch of the parts of a tick, with a histogram of each part.
 pub struct StageTimes {
     last: Instant,
     tick: [u64; PARTS],
@@ -89,14 +83,13 @@ impl Default for StageTimes {
 }
 
 impl StageTimes {
-    /// Begin a tick.
     pub fn begin(&mut self) {
         self.tick = [0; PARTS];
         self.last = Instant::now();
     }
 
-    /// End a part of the tick, which began at the end of the previous part. Returns its duration in nanoseconds. A part
-    /// can occur several times in a tick.
+    /// End a part, which began at the end of the previous one; returns its ns. A part can occur several times in a
+    /// tick.
     pub fn mark(&mut self, part: Stage) -> u64 {
         let now = Instant::now();
         let taken = u64::try_from(now.duration_since(self.last).as_nanos()).unwrap_or(u64::MAX);
@@ -105,7 +98,6 @@ impl StageTimes {
         taken
     }
 
-    /// End the tick.
     pub fn finish(&mut self) {
         for (time, &taken) in self.times.iter_mut().zip(&self.tick) {
             time.add(taken);
@@ -120,7 +112,6 @@ impl StageTimes {
         (part, taken, self.tick.iter().sum())
     }
 
-    /// Times of a part in all ticks.
     #[must_use]
     pub fn summary(&self, part: Stage) -> Summary {
         self.times[part.index()].summary()
@@ -133,14 +124,14 @@ mod tests {
     use std::{thread, time::Duration};
 
     #[test]
-    fn every_part_has_a_place_of_its_own() {
+    fn every_part_has_its_own_index() {
         let places: Vec<_> = Stage::all().map(Stage::index).collect();
         assert_eq!(places, (0..PARTS).collect::<Vec<_>>());
         assert_eq!(Stage::Process(ProcessId::QuickChange).to_string(), "Quick Change");
     }
 
     #[test]
-    fn the_part_that_takes_longest_is_to_blame() {
+    fn worst_part_is_the_longest() {
         let mut stage_times = StageTimes::default();
         stage_times.begin();
         stage_times.mark(Stage::Process(ProcessId::Task));

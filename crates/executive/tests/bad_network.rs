@@ -1,5 +1,4 @@
-//! For every kind of network fault (loss, duplication, reordering, jitter, silence), no message asks for a jump, and
-//! the robot comes to rest at a position that the host knows.
+//! For every network fault, no message asks for a jump, and the robot rests at a position that the host knows.
 
 use egm::{LinkState, Pose, Sample, Twist, pose::norm};
 use executive::egm::{EgmOptions, Line, Order, Placement};
@@ -27,13 +26,11 @@ impl Swing {
     }
 }
 
-/// The commanded motion and its results.
 struct Bench {
     line: Line,
     placement: Placement,
     swing: Swing,
-    /// Start of the path, and the number of its points.
-    path: Option<(Pose, u32)>,
+    path: Option<(Pose, u32)>, // start of the path, and the number of its points
     begun: u32,
     last: Option<Sample>,
     travelled: f64,
@@ -48,7 +45,6 @@ impl Bench {
         Self { line, placement, swing, path: None, begun: 0, last: None, travelled: 0.0, messages: 0 }
     }
 
-    /// Orders the next point, or begins a path if one can begin.
     fn command(&mut self) {
         let (at, sample) = (self.line.now(), self.line.sample());
         let order = match (&mut self.path, sample.start) {
@@ -66,7 +62,6 @@ impl Bench {
         self.line.order(&order);
     }
 
-    /// Executes a tick and checks every message of it.
     fn tick(&mut self) {
         self.line.advance(TICK);
         let limits = self.placement.limits();
@@ -129,7 +124,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
     #[test]
-    fn no_network_makes_a_jump(network in network(), swing in swing()) {
+    fn network_faults_cause_no_jump(network in network(), swing in swing()) {
         let mut bench = Bench::new(&network, swing);
         // Longer than the longest silence and the path that follows it.
         bench.run(250);
@@ -173,7 +168,7 @@ fn a_short_silence_interrupts_nothing() {
 
 /// A longer silence ends the path; when messages arrive again, a new path begins at the robot's position.
 #[test]
-fn a_long_silence_ends_the_path_and_the_next_begins_where_the_robot_is() {
+fn path_after_a_long_silence_begins_at_the_robot() {
     for during in ["0.15", "0.5", "2", "5"] {
         let mut bench = Bench::new(&format!(",silent-at=2.0,silent-for={during},timeout=10"), WIDE);
         bench.run(250);

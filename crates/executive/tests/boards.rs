@@ -1,8 +1,5 @@
-//! Boards in threads of one process: they give the same bits as one board and allocate nothing; a board that leaves or
-//! does not match the run is detected.
-//!
-//! `tests/boards.rs` of the whole system tests the boards' programs, and everything that only processes can do to each
-//! other.
+//! Boards in threads of one process give the same bits as one board and allocate nothing; a board that leaves or does
+//! not match the run is detected. `tests/boards.rs` of the whole system tests the boards' programs.
 
 use std::{
     path::{Path, PathBuf},
@@ -50,8 +47,7 @@ fn store() -> &'static Store {
     })
 }
 
-/// The external inputs of a tick: commands, actions at the joystick box, a gripper that appears and disappears, another
-/// generation.
+/// Commands, actions at the joystick box, a gripper that appears and disappears, another generation.
 fn external(tick: Tick) -> ExternalInputs {
     let mut external = ExternalInputs::default();
     let number = u32::try_from(tick.0 / 100).unwrap();
@@ -74,12 +70,10 @@ fn external(tick: Tick) -> ExternalInputs {
     external
 }
 
-/// The outcome of some ticks.
 struct Played<L, E> {
     course: Course<L>,
     runner: Runner<L>,
-    /// Error of the levels, which has ended it.
-    error: Option<E>,
+    error: Option<E>, // error of the levels, which has ended it
 }
 
 /// Run a number of ticks, or until the levels fail; call `before` ahead of each.
@@ -98,7 +92,6 @@ where
     Played { course, runner, error: None }
 }
 
-/// Two equal generations; nothing is loaded.
 struct Fixed;
 
 impl BoardData for Fixed {
@@ -187,7 +180,7 @@ fn a_board_that_leaves_stops_the_pulse_and_is_named() {
 }
 
 #[test]
-fn who_is_missing_is_said() {
+fn missing_boards_are_named() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let name = RunName::unique("missing");
     let stop = AtomicBool::new(false);
@@ -200,7 +193,6 @@ fn who_is_missing_is_said() {
         let error = coordinator.gather(PATIENCE, &stop, |event, missing| {
             assert!(matches!(event, BoardEvent::Came { .. }), "{event:?}");
             absent = missing.to_vec();
-            // The waiting process knows which board is missing; that is enough here.
             stop.store(missing == [Board::Six], Ordering::Relaxed);
         });
         assert_eq!(absent, [Board::Six]);

@@ -1,6 +1,5 @@
-//! A device behind a coupler over TCP, with an emulated coupler: cuts, restarts, and controllers that are lost.
-//!
-//! The tests wait for events, with long limits, and measure no times: the example `field` does.
+//! A device behind an emulated coupler: cuts, restarts, lost controllers. The tests measure no times: the example
+//! `field` does.
 
 use std::{
     env,
@@ -22,11 +21,9 @@ static ALLOCATOR: Counting = Counting;
 
 const TICK: Duration = Duration::from_millis(40);
 const LIMIT: Duration = Duration::from_secs(30);
-/// The valve that may not be on at rest, and the one that may.
-const VALVE: u16 = 0x01;
+const VALVE: u16 = 0x01; // the valve that may not be on at rest, and the one that may
 const CLAMP: u16 = 0x02;
-/// Word of the output image that holds the number of the tick.
-const CLOCK: usize = 1;
+const CLOCK: usize = 1; // word of the output image that holds the number of the tick
 /// The address of the station, for the controller in another process.
 const STATION: &str = "RCS_TEST_STATION";
 
@@ -52,7 +49,6 @@ fn station() -> Station {
     Station::open(address, Emulated::new(Kind::Bk9000, 1, 4, 2)).expect("a free port")
 }
 
-/// A controller with one tick per 40 ms.
 struct Controller {
     device: Device,
     orders: Orders,
@@ -75,7 +71,6 @@ impl Controller {
         *self.device.report()
     }
 
-    /// Ticks until a condition holds.
     fn until(&mut self, what: &str, mut condition: impl FnMut(&Report) -> bool) -> Report {
         let begun = Instant::now();
         loop {
@@ -106,7 +101,7 @@ fn wait_until(what: &str, mut condition: impl FnMut() -> bool) {
 }
 
 #[test]
-fn outputs_arrive_inputs_return_and_nothing_is_allocated() {
+fn exchange_with_a_device_does_not_allocate() {
     let station = station();
     station.with(|coupler| coupler.inputs_mut()[3] = 77);
     let mut controller = Controller::of(station.address(), plan(5000, 4000));

@@ -1,9 +1,6 @@
-//! A tick allocates nothing: checked with everything that the executive does in one.
-//!
-//! This also checks iceoryx2: another version, or another messaging pattern, that allocates when a value is written or
-//! read fails here (publish-subscribe of 0.10 allocates once a message).
-//!
-//! This file has only one test, because everything in it runs on the counting allocator.
+//! A tick allocates nothing, with everything that the executive does in one, also in iceoryx2: a version that allocates
+//! when a value is written or read fails here. The file has one test, because everything runs on the counting
+//! allocator.
 
 mod common;
 
@@ -58,7 +55,6 @@ impl Levels<()> for Failing {
     }
 }
 
-/// Allocates in every hundredth tick.
 struct Careless;
 
 impl Levels<()> for Careless {
@@ -83,7 +79,7 @@ impl Levels<()> for Careless {
 }
 
 #[test]
-fn a_tick_does_not_allocate_and_one_that_does_is_noticed() {
+fn allocation_in_a_tick_is_detected() {
     assert!(alloc::is_installed());
     let before = alloc::allocations();
     drop(std::hint::black_box(Box::new(1)));
@@ -98,7 +94,6 @@ fn a_tick_does_not_allocate_and_one_that_does_is_noticed() {
     let publisher = Publisher::create(&name).expect("this machine has shared memory");
     let (mut course, mut runner) = (Course::new(Failing), Runner::new(Some(publisher)));
     let external = ExternalInputs::default();
-    // The first warm-up creates the copy for warm-ups.
     runner.warm_up(&mut course, &external, &());
     for _ in 0..10_000 {
         runner.warm_up(&mut course, &external, &());

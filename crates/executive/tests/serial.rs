@@ -19,7 +19,6 @@ use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// The robot's end of a line, and the path of the controller's.
 struct Peer {
     master: File,
     path: PathBuf,
@@ -87,7 +86,7 @@ fn a_tick_reads_a_buffer_and_leaves_the_rest_in_the_port() {
 }
 
 #[test]
-fn a_tick_allocates_nothing_not_even_when_the_port_goes() {
+fn tick_with_a_lost_port_does_not_allocate() {
     assert!(is_installed());
     let mut peer = Peer::new();
     let mut line = peer.line();

@@ -48,7 +48,7 @@ fn with_stamp(tick: u64) -> (ExternalInputs, CommonMemory, Pulse) {
 }
 
 #[test]
-fn a_reader_sees_what_was_published_last() {
+fn reader_gets_the_last_published_values() {
     let name = name("sees");
     let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
     let reader = Attached::open(&name).expect("the run lives");
@@ -63,7 +63,7 @@ fn a_reader_sees_what_was_published_last() {
 }
 
 #[test]
-fn a_reader_meets_no_torn_tick() {
+fn reader_never_gets_a_torn_tick() {
     let name = name("torn");
     let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
     let (stop, attached) = (AtomicBool::new(false), Barrier::new(2));
@@ -73,7 +73,7 @@ fn a_reader_meets_no_torn_tick() {
             attached.wait();
             let mut last = 0;
             loop {
-                // After the end of writing the next attempt succeeds, whatever this one finds.
+                // After the end of writing the next attempt succeeds.
                 let written = stop.load(Ordering::Acquire);
                 let memory = match reader.memory() {
                     Ok(memory) => memory,
@@ -107,7 +107,7 @@ fn a_reader_meets_no_torn_tick() {
 }
 
 #[test]
-fn a_process_that_does_not_write_keeps_no_reader_from_the_rest() {
+fn silent_process_does_not_block_readers() {
     let name = name("absent");
     let mut publisher = Publisher::create(&name).expect("shared memory");
     let reader = Attached::open(&name).expect("the run lives");
@@ -125,7 +125,7 @@ fn a_process_that_does_not_write_keeps_no_reader_from_the_rest() {
 }
 
 #[test]
-fn readers_come_and_go_and_the_last_one_out_removes_everything() {
+fn last_process_to_leave_removes_the_files() {
     let name = name("last");
     let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
     drop(Attached::open(&name).expect("the run lives"));
@@ -143,7 +143,7 @@ fn readers_come_and_go_and_the_last_one_out_removes_everything() {
 }
 
 #[test]
-fn runs_with_other_names_do_not_meet_and_the_same_name_is_refused() {
+fn second_run_of_a_name_is_refused() {
     let (one, other) = (name("one"), name("other"));
     let mut first = Publisher::create(&one).unwrap();
     let mut second = Publisher::create(&other).unwrap();
@@ -166,7 +166,6 @@ impl Numbers {
     }
 }
 
-/// Appends the image of a random legal value.
 fn some_value(schema: &Schema, numbers: &mut Numbers, image: &mut Vec<u8>) {
     match schema {
         Schema::Bool => image.push(u8::try_from(numbers.below(2)).unwrap()),
@@ -200,7 +199,7 @@ fn some_value(schema: &Schema, numbers: &mut Numbers, image: &mut Vec<u8>) {
 }
 
 #[test]
-fn any_common_memory_survives_the_way_through_shared_memory() {
+fn common_memory_round_trips_through_shared_memory() {
     let name = name("any");
     let mut publisher = Publisher::create(&name).unwrap();
     let reader = Attached::open(&name).unwrap();
@@ -217,7 +216,7 @@ fn any_common_memory_survives_the_way_through_shared_memory() {
 }
 
 #[test]
-fn an_announced_run_is_found_before_its_first_tick_and_its_name_is_taken() {
+fn announced_run_is_found_before_its_first_tick() {
     let name: RunName = format!("announced-{}", std::process::id()).parse().unwrap();
     let announced = Announced::named(name.clone()).unwrap();
     assert_eq!(memory::starting(&name).as_deref(), Some("starts"));
@@ -237,7 +236,7 @@ fn an_announced_run_is_found_before_its_first_tick_and_its_name_is_taken() {
 }
 
 #[test]
-fn runs_of_a_job_in_one_process_have_names_of_their_own() {
+fn runs_of_a_job_in_one_process_have_different_names() {
     let first = Announced::of_job("twice").unwrap();
     let second = Announced::of_job("twice").unwrap();
     assert_eq!(second.name().as_str(), format!("{}.1", first.name()));

@@ -62,14 +62,13 @@ fn splined(points: &[Vector]) -> Vec<Vector> {
             targets.push(path.target(now).0.position);
             now += CYCLE;
         }
-        // T3 Interface repeats its last position.
         path.push(at, &pose(points.get(tick).unwrap_or(&points[points.len() - 1])), &limits).unwrap();
     }
     targets
 }
 
 #[test]
-fn the_spline_takes_the_jerk_of_the_corners_away_and_ends_at_the_last_point() {
+fn spline_removes_corner_jerk_and_ends_at_the_last_point() {
     let points = points();
     let (straight, splined) = (straight(&points), splined(&points));
     let jerks = [greatest_jerk(&straight), greatest_jerk(&splined)];

@@ -10,7 +10,6 @@ use executive::egm::{Bridge, EgmOptions, Line, Placement};
 
 const TICK: u64 = 40_000_000;
 
-/// A host that sends the robot along X, and the robot behind the bridge.
 struct Gateway {
     host: Host,
     bridge: Bridge,
@@ -18,8 +17,7 @@ struct Gateway {
     rx: LinkBytes,
     dtr: bool,
     x: i16,
-    /// Greatest distance of the robot from its target so far, mm.
-    behind: f64,
+    behind: f64, // greatest distance of the robot from its target so far, mm
 }
 
 impl Gateway {

@@ -1,4 +1,4 @@
-//! The data of a reader besides the buffers: the headers of the last ten seconds, and the simulated cell.
+//! A reader also gets the headers of the last ten seconds, and the simulated cell.
 
 mod common;
 
@@ -15,7 +15,6 @@ use rcs_core::{table::Values, tick::Tick};
 
 use crate::common::headers;
 
-/// Common memory of a tick in which every process has made a decision.
 fn memory(tick: u64) -> CommonMemory {
     let values = Values { step: 1, variables: tick };
     let header = Header {
@@ -39,7 +38,7 @@ fn ticks(history: &[Headers]) -> Vec<u64> {
 }
 
 #[test]
-fn a_late_reader_sees_the_last_ten_seconds() {
+fn late_reader_gets_the_last_ten_seconds() {
     let name = RunName::unique("history");
     let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
     let reader = Attached::open(&name).expect("the run lives");

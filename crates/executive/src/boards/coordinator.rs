@@ -1,8 +1,8 @@
 //! Board 0's side of `--boards split`: gives the pulse, waits for the stamps, collects common memory.
 //!
-//! For the run, the boards are a ladder like any other ([`Levels`]): common memory after a tick is the same, bit for
-//! bit. There is one additional failure: a board that does not stamp. Board 0 then gives no more pulses. So no process
-//! is stepped again and the robot gets no further point; valves and fingers stay as they are.
+//! Common memory after a tick is the same, bit for bit, as that of a ladder on one board. There is one additional
+//! failure: a board that does not stamp. Board 0 then gives no more pulses: no process is stepped again, the robot gets
+//! no further point, and valves and fingers stay as they are.
 
 use std::{
     process::{Child, ExitStatus},
@@ -33,7 +33,6 @@ use crate::{
 };
 use closed_loop::course::Levels;
 
-/// Name of board 0 among the nodes of a run.
 pub const BOARD_0: &str = "board-0";
 /// Time that board 0 waits for a notification before it checks by itself.
 const LOOK: Duration = Duration::from_millis(10);
@@ -44,32 +43,19 @@ const LIFE: u32 = 25;
 /// Time limit for the boards to end by themselves when the run is over.
 const CLOSING_LIMIT: Duration = Duration::from_secs(2);
 
-/// A board joined or left before the first tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoardEvent {
-    Came {
-        board: Board,
-        pid: u32,
-    },
-    /// A board that had joined has left.
-    Left {
-        board: Board,
-        pid: u32,
-    },
+    Came { board: Board, pid: u32 },
+    Left { board: Board, pid: u32 },
 }
 
-/// State of another board in board 0.
 struct Seat {
     board: Board,
-    /// Its process, if board 0 started it.
-    child: Option<Child>,
-    /// Its services, once it has joined.
-    ports: Option<(Readers, ReportReader)>,
-    /// Services of earlier processes of this board.
-    former: Vec<(Readers, ReportReader)>,
+    child: Option<Child>,                   // its process, if board 0 started it
+    ports: Option<(Readers, ReportReader)>, // its services, once it has joined
+    former: Vec<(Readers, ReportReader)>,   // services of earlier processes of this board
     report: BoardReport,
-    /// Allocations of earlier processes of this board.
-    former_allocations: u64,
+    former_allocations: u64, // allocations of earlier processes of this board
     times: Box<Histogram>,
 }
 
@@ -86,7 +72,6 @@ impl Seat {
         }
     }
 
-    /// True if a process has joined as this board.
     const fn has_come(&self) -> bool {
         self.report.pid != 0
     }
@@ -95,7 +80,6 @@ impl Seat {
         self.former_allocations + self.report.allocations
     }
 
-    /// Exit status of the process, if board 0 started it and it has ended.
     fn ended(&mut self) -> Option<ExitStatus> {
         self.child.as_mut().and_then(|child| child.try_wait().ok().flatten())
     }
@@ -104,7 +88,6 @@ impl Seat {
         Lost { board: self.board, pid: self.report.pid, tick, how }
     }
 
-    /// True if the board has stamped `tick`.
     fn has_stamped(&mut self, tick: Tick) -> Result<bool, Lost> {
         let Some((_, reports)) = &self.ports else { return Ok(false) };
         let (stamp, report) = reports.read().map_err(|error| self.lost(tick, How::Garbled(error)))?;
@@ -116,7 +99,6 @@ impl Seat {
     }
 }
 
-/// Figures of a board for the result of the run.
 #[derive(Clone, Copy)]
 pub struct BoardFigures<'a> {
     pub board: Board,
@@ -125,15 +107,12 @@ pub struct BoardFigures<'a> {
     pub allocations: u64,
     /// Times from wake-up to stamp.
     pub times: &'a Histogram,
-    /// True if the system granted all its real-time requests.
-    pub punctual: bool,
+    pub punctual: bool, // all real-time requests were granted
 }
 
-/// Board 0. Dropping it ends the run for all boards, waits for the processes that it started, and removes the shared
-/// memory.
+/// Board 0. Dropping it ends the run for all boards, waits for its processes, and removes the shared memory.
 pub struct Coordinator {
     name: RunName,
-    // Dropped before the files are removed: iceoryx2 must have released them by then.
     ports: Option<(PulseGiver, RunNode)>,
     seats: Vec<Seat>,
     pulse: SystemPulse,
@@ -142,10 +121,7 @@ pub struct Coordinator {
 }
 
 impl Coordinator {
-    /// Set up the pulse of a run. It first removes the remains of killed runs.
-    ///
-    /// # Errors
-    /// [`SharedMemoryError`] if there is not enough shared memory or the name is taken.
+    /// Set up the pulse of a run, after removing the remains of killed runs.
     pub fn create(name: &RunName, card: &RunCard) -> Result<Self, SharedMemoryError> {
         runs::clean()?;
         memory::have_room()?;
@@ -168,16 +144,12 @@ impl Coordinator {
         &self.name
     }
 
-    /// Register a board's process that this process has started.
     pub fn adopt(&mut self, board: Board, child: Child) {
         self.seats[board.index()].child = Some(child);
     }
 
     /// Wait until all boards have joined and read each other. Calls `heard` for each board that joins or leaves, with
-    /// the list of those still missing.
-    ///
-    /// # Errors
-    /// [`SplitError`] if a board does not join, or has another program, data or job.
+    /// the missing ones. Fails if a board does not join, or has another program, data or job.
     pub fn gather(
         &mut self,
         patience: Duration,
@@ -226,7 +198,6 @@ impl Coordinator {
         self.seats.iter().filter(|seat| are_so(seat)).map(|seat| seat.board).collect()
     }
 
-    /// Check for a board; true if it has joined since the last check.
     fn look_for(&mut self, at: usize) -> Result<bool, SplitError> {
         let (Some((_, node)), Some(seat)) = (&mut self.ports, self.seats.get_mut(at)) else {
             return Ok(false);
@@ -266,12 +237,9 @@ impl Coordinator {
         Some(event)
     }
 
-    /// Wait for a process that replaces a lost board. It joins with the next epoch, so that later writes of the lost
-    /// one are not read. Afterwards run the tick again on the same inputs: boards that have already stamped it take no
-    /// further step, and the new one restarts its processes on the last outputs of the lost one.
-    ///
-    /// # Errors
-    /// [`SplitError`] if no process joins, or it has another program, data or job.
+    /// Wait for a process that replaces a lost board; it joins with the next epoch. Then run the tick again on the same
+    /// inputs: boards that have stamped it take no further step, and the new one restarts its processes on the last
+    /// outputs of the lost one.
     pub fn await_successor(
         &mut self,
         lost: &Lost,
@@ -283,7 +251,6 @@ impl Coordinator {
         self.gather(patience, stop, heard)
     }
 
-    /// Free a board's place for the next process that joins.
     fn vacate(&mut self, at: usize) {
         let (Some((giver, _)), Some(seat)) = (&mut self.ports, self.seats.get_mut(at)) else { return };
         // Kept until the successor has read the last outputs to the devices from them.
@@ -294,7 +261,6 @@ impl Coordinator {
         giver.give(&self.pulse);
     }
 
-    /// The states of the processes after the last tick.
     #[must_use]
     pub const fn states(&self) -> &LadderState {
         &self.states
@@ -310,7 +276,6 @@ impl Coordinator {
         })
     }
 
-    /// The present epochs of the boards.
     #[must_use]
     pub const fn epochs(&self) -> &Epochs {
         &self.pulse.epochs
@@ -324,10 +289,7 @@ impl Coordinator {
         }
     }
 
-    /// True if all boards have checked the load and have task data with this fingerprint.
-    ///
-    /// # Errors
-    /// The board that has other task data.
+    /// True if all boards have checked the load and have these task data. Errors: the board that has others.
     pub fn have_checked(&mut self, load: u32, data: u64) -> Result<bool, Board> {
         let mut all = true;
         for seat in &mut self.seats {
@@ -346,7 +308,6 @@ impl Coordinator {
         Ok(all)
     }
 
-    /// Put the load into effect with the next pulse.
     pub const fn commit(&mut self, load: u32) {
         self.pulse.loaded = load;
     }
@@ -380,7 +341,6 @@ impl Coordinator {
         }
     }
 
-    /// Collect common memory of a tick, and the states of the processes after the tick.
     fn collect(&mut self, tick: Tick, after: &mut CommonMemory) -> Result<(), Lost> {
         for seat in &mut self.seats {
             seat.times.add(seat.report.step_ns);
@@ -391,19 +351,16 @@ impl Coordinator {
             }
             readers.states(tick, &mut self.states).map_err(garbled)?;
         }
-        // All boards have read the same buttons.
         self.states.buttons = self.pulse.external.devices.joystick.single_step;
         Ok(())
     }
 
-    /// Wait for the processes that board 0 started to end, and kill those that do not.
     fn reap(&mut self) {
         let deadline = Instant::now() + CLOSING_LIMIT;
         for child in self.seats.iter_mut().filter_map(|seat| seat.child.as_mut()) {
             while Instant::now() < deadline && matches!(child.try_wait(), Ok(None)) {
                 std::thread::sleep(Duration::from_millis(2));
             }
-            // Neither call fails for a child that was not waited for; one that was no longer exists.
             let _ = child.kill();
             let _ = child.wait();
         }

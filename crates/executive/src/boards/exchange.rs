@@ -1,11 +1,9 @@
 //! Data exchange of the boards: the outputs of each process, doubled by tick parity, and its state.
 //!
-//! Each process has one service with three slots ([`crate::memory::slot`]): its outputs in even ticks, its outputs in odd
-//! ticks, and its state. A reader that finds another stamp than the one it needs reads nothing: the process's outputs
-//! then keep their old stamp, and its neighbours treat it as lost (docs/design/handshake.md "Stamp").
-//!
-//! A service belongs to the board on which the process runs, and its name contains the board's epoch: a board that
-//! replaces a killed one creates services of the next epoch.
+//! Each process has one service with three slots ([`crate::memory::slot`]). A reader that finds another stamp than the
+//! one it needs reads nothing: the outputs keep their old stamp, and the neighbours treat the process as lost
+//! (docs/design/handshake.md "Stamp"). The service's name contains the board's epoch: a board that replaces a killed
+//! one creates services of the next epoch.
 
 use iceoryx2::{node::Node, prelude::ipc};
 use interfaces::{CommonMemory, for_each_process, process::Process};
@@ -29,17 +27,14 @@ pub(super) const READERS: usize = BOARDS + 2;
 type StateOf<P> = <P as Process<TaskData<'static>>>::State;
 type OutputsOf<P> = <P as Process<TaskData<'static>>>::Outputs;
 
-/// Keys of the slots of a process: its outputs in even and in odd ticks, and its state.
 const EVEN: u32 = 0;
 const ODD: u32 = 1;
 const STATE: u32 = 2;
 
-/// Key of the outputs of a tick.
 const fn outputs_of(tick: Tick) -> u32 {
     if tick.0.is_multiple_of(2) { EVEN } else { ODD }
 }
 
-/// The writer's ends of a process's slots: outputs of `N` bytes, state of `S`.
 struct ProcessWriter<const N: usize, const S: usize, O, T> {
     even: SlotWriter<N, O>,
     odd: SlotWriter<N, O>,
@@ -69,7 +64,6 @@ impl<const N: usize, const S: usize, O: Plain, T: Plain> ProcessWriter<N, S, O, 
     }
 }
 
-/// A reader's ends of a process's slots.
 struct ProcessReader<const N: usize, const S: usize, O, T> {
     even: SlotReader<N, O>,
     odd: SlotReader<N, O>,
@@ -103,7 +97,6 @@ macro_rules! exchange {
             reads: $reads:expr;
         }
     )+) => {
-        /// The writer's ends of a board's processes.
         pub struct Writers {
             $( $field: Option<ProcessWriter<
                 { slot::size::<OutputsOf<$id>>() },
@@ -114,10 +107,8 @@ macro_rules! exchange {
         }
 
         impl Writers {
-            /// Create the services of a board's processes.
-            ///
-            /// # Errors
-            /// Errors of iceoryx2; if a service already exists, another process runs the same board.
+            /// Create the services of a board's processes; one that exists means that another process runs the same
+            /// board.
             pub fn create(
                 node: &Node<ipc::Service>,
                 board: Board,
@@ -138,7 +129,6 @@ macro_rules! exchange {
             }
         }
 
-        /// The readers' ends of a board's processes.
         pub struct Readers {
             $( $field: Option<ProcessReader<
                 { slot::size::<OutputsOf<$id>>() },
@@ -149,10 +139,7 @@ macro_rules! exchange {
         }
 
         impl Readers {
-            /// Open the services of a board's processes.
-            ///
-            /// # Errors
-            /// Errors of iceoryx2; a service that does not exist yet may be created later.
+            /// Open the services of a board's processes; one that does not exist yet may be created later.
             pub fn open(
                 node: &Node<ipc::Service>,
                 board: Board,
@@ -165,11 +152,8 @@ macro_rules! exchange {
                 )+ })
             }
 
-            /// Read the outputs of the processes in `tick`; outputs of a process that did not write in it are
-            /// unchanged. Returns true if all wrote. Does not allocate.
-            ///
-            /// # Errors
-            /// If bytes are not a valid record.
+            /// Read the outputs of the processes in `tick`; those of a process that did not write in it are unchanged.
+            /// Returns true if all wrote. Does not allocate.
             pub fn outputs(&self, tick: Tick, memory: &mut CommonMemory) -> Result<bool, DecodeError> {
                 let mut complete = true;
                 $( if let Some(process) = &self.$field {
@@ -181,10 +165,7 @@ macro_rules! exchange {
                 Ok(complete)
             }
 
-            /// Read the states of the processes after `tick`. Does not allocate.
-            ///
-            /// # Errors
-            /// If bytes are not a valid record.
+            /// Read the states of the processes after `tick`. Does not allocate. Fails if bytes are not a valid record.
             pub fn states(&self, tick: Tick, states: &mut LadderState) -> Result<(), DecodeError> {
                 $( if let Some(process) = &self.$field
                     && let Some(state) = process.state.read_at(tick)?

@@ -12,35 +12,26 @@ use super::Board;
 use crate::memory::SharedMemoryError;
 use closed_loop::failure;
 
-/// Time without a stamp after which a board is lost (docs/design/handshake.md "Lost board"); the same time applies with
-/// the fast clock.
+/// Time without a stamp after which a board is lost (docs/design/handshake.md "Lost board").
 pub const LOST_AFTER: Duration = Duration::from_millis(25 * TICK_MS);
 
-/// Errors of starting the boards together.
 #[derive(Debug, thiserror::Error)]
 pub enum SplitError {
-    /// Shared memory, which boards need, is not available.
     #[error("boards exchange their data in shared memory, which is not available: {0}")]
     SharedMemory(#[from] SharedMemoryError),
-    /// A board's process could not be started.
     #[error("{board} cannot be started: {source}")]
     Start {
         board: Board,
-        /// The error of the operating system.
-        source: std::io::Error,
+        source: std::io::Error, // the error of the operating system
     },
-    /// A board's process ended before the first tick.
     #[error("{board} ended before the first tick ({status}); its reason stands above")]
     Ended { board: Board, status: ExitStatus },
-    /// A board has another program, other data or another job.
     #[error("{board} (process {pid}) cannot take part: {difference}")]
     Different { board: Board, pid: u32, difference: &'static str },
-    /// Boards did not join.
     #[error("{} did not come within {} s", list(.missing), .patience.as_secs())]
     Missing {
         missing: Vec<Board>,
-        /// Time for which board 0 waited for them.
-        patience: Duration,
+        patience: Duration, // time for which board 0 waited for them
     },
     #[error("interrupted while waiting for {}", list(.0))]
     Interrupted(Vec<Board>),
@@ -51,15 +42,11 @@ fn list(boards: &[Board]) -> String {
     boards.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// Ways in which a board is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum How {
     Ended(ExitStatus),
-    /// It has reported that it leaves.
     Left,
-    /// It does not answer.
     Silent,
-    /// It wrote bytes that are not a valid record.
     Garbled(DecodeError),
     /// It stamped a tick without having written its outputs.
     Unwritten,
@@ -70,9 +57,7 @@ pub enum How {
 pub struct Lost {
     pub board: Board,
     pub pid: u32,
-    /// The tick that it did not finish.
     pub tick: Tick,
-    /// The way in which it was lost.
     pub how: How,
 }
 
@@ -92,8 +77,8 @@ impl fmt::Display for Lost {
 }
 
 impl Lost {
-    /// The loss in one sentence: what the board's processes were doing, and the consequence. `hws` and `memory` are
-    /// those at the start of the tick.
+    /// The loss in one sentence: what the board's processes were doing, and the consequence; from the start of the
+    /// tick.
     #[must_use]
     pub fn explain(&self, hws: &HwsCommand, memory: &CommonMemory) -> String {
         let doing = failure::unfinished_commands(self.board.processes(), hws, memory);

@@ -1,13 +1,11 @@
 //! A board's side of `--boards split`: waits for the pulse and steps its processes.
 //!
-//! A board does what the ladder does on one board, with the same code ([`Ladder::step_in_order`]), for its own
-//! processes. Everything it needs for a tick comes with the pulse: the number, the external inputs, the generation of
-//! the task data. It never counts pulses and never reads a clock.
+//! A board steps its own processes with the code of the ladder ([`Ladder::step_in_order`]). Everything it needs for a
+//! tick arrives with the pulse; it never reads a clock.
 //!
-//! A board that replaces a killed one during a run finds a pulse that the killed one has not answered. It latches the
-//! outputs of its predecessor and writes them again with its own epoch, so that its neighbours read the same before and
-//! after the change. It restarts the processes: they adopt the numbers of the commands that they find and report that
-//! they were restarted (docs/design/handshake.md "Restart").
+//! A board that replaces a killed one finds a pulse without an answer. It latches the outputs of its predecessor and
+//! writes them with its own epoch: its neighbours read the same as before. It restarts the processes, which adopt the
+//! numbers of their commands and report the restart (docs/design/handshake.md "Restart").
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
@@ -46,44 +44,33 @@ const CROWDED: Duration = Duration::from_secs(2);
 /// Time between two attempts to open a service that does not exist yet.
 const AGAIN: Duration = Duration::from_millis(5);
 
-/// Errors of a board that joins a run or takes part in it.
 #[derive(Debug, thiserror::Error)]
 pub enum MemberError {
     #[error(transparent)]
     SharedMemory(#[from] SharedMemoryError),
-    /// The board has another program or other data than the run.
     #[error("{board} cannot take part in {run}: {difference}")]
     Different { board: Board, run: RunName, difference: &'static str },
-    /// Another process already runs as this board.
     #[error("{board} of {run} runs already: {source}")]
     Taken {
         board: Board,
         run: RunName,
-        /// The error of iceoryx2.
-        source: SharedMemoryError,
+        source: SharedMemoryError, // the error of iceoryx2
     },
-    /// The last outputs of the board to its devices are not known.
     #[error("{board} cannot be taken over: what it wrote in tick {last} is lost")]
     NothingToLatch {
         board: Board,
-        /// The last tick that all boards have finished.
-        last: Tick,
+        last: Tick, // the last tick that all boards have finished
     },
     #[error("{0} is over")]
     RunIsOver(RunName),
-    /// Shared memory holds an invalid record.
     #[error("shared memory holds an invalid record: {0}")]
     Decode(#[from] DecodeError),
-    /// The pulse names a generation of the task data that was never loaded.
     #[error("the pulse asks for generation {0} of the task data, which the job does not have")]
     Generation(u32),
-    /// The pulse does not follow the last one.
     #[error("tick {found} came after tick {last}")]
     OutOfStep {
-        /// The tick that was run last.
-        last: Tick,
-        /// The tick of the pulse.
-        found: Tick,
+        last: Tick,  // the tick that was run last
+        found: Tick, // the tick of the pulse
     },
 }
 
@@ -96,22 +83,14 @@ pub trait BoardData {
     fn check(&mut self, load: u32) -> Checked;
 }
 
-/// Ways in which a board's part in a run ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MemberEnd {
     Over,
-    /// The board was asked to leave.
     Asked,
-    /// Board 0 ended.
     Orphaned,
-    /// Board 0 declared this board lost and gave its place to another process.
     Replaced,
 }
 
-/// Arrange that this process ends when its parent process ends. Returns false if that has already ended.
-///
-/// # Errors
-/// The error of the operating system.
 pub fn end_with_parent(parent: u32) -> std::io::Result<bool> {
     set_parent_process_death_signal(Some(Signal::KILL))?;
     let present = getppid().map(Pid::as_raw_nonzero).and_then(|pid| u32::try_from(pid.get()).ok());
@@ -127,18 +106,15 @@ struct Ports {
     node: RunNode,
 }
 
-/// A board in a run. Dropping it leaves the run.
 pub struct Member {
     board: Board,
     processes: Vec<ProcessId>,
     epoch: Epoch,
     name: RunName,
-    // Dropped before the files are removed.
     ports: Option<Ports>,
     card: RunCard,
     ladder: Ladder,
-    /// Common memory by tick parity, as read by this board.
-    halves: [CommonMemory; 2],
+    halves: [CommonMemory; 2], // common memory by tick parity, as read by this board
     tick: Tick,
     loaded: u32,
     report: BoardReport,
@@ -146,10 +122,8 @@ pub struct Member {
 }
 
 impl Member {
-    /// Join a run as one of its boards.
-    ///
-    /// # Errors
-    /// [`MemberError`] if there is no such run, if it runs with another `fingerprint`, or if the place is taken.
+    /// Join a run as one of its boards. Fails if the run does not exist, has another `fingerprint`, or the place is
+    /// taken.
     pub fn join(name: &RunName, board: Board, fingerprint: Fingerprint) -> Result<Self, MemberError> {
         runs::find_living(name)?;
         let node = runs::enter(name, board.name())?;
@@ -182,7 +156,6 @@ impl Member {
         let (tick, epoch) = (pulse.tick.previous(), pulse.epochs[board.index()]);
         if pulse.tick != Tick::BEFORE_START {
             let latched = latch(&node, board, &pulse, &mut halves)?;
-            // A neighbour that has not stepped this tick yet reads it here.
             writers.write(tick, latched, &LadderState::default());
         }
         reports.write(tick, &report);
@@ -215,11 +188,8 @@ impl Member {
         self.loaded
     }
 
-    /// Step the board's processes, once a pulse, until the run is over. `data` gives the task data; `stop` asks the
-    /// board to leave. `punctual` is true if all real-time requests were granted.
-    ///
-    /// # Errors
-    /// [`MemberError`] if a pulse is out of step or invalid, or a record in shared memory is invalid.
+    /// Step the board's processes, once per pulse, until the run is over. `stop` asks the board to leave; `punctual` is
+    /// true if all real-time requests were granted.
     pub fn run(
         &mut self,
         mut data: impl BoardData,
@@ -256,7 +226,6 @@ impl Member {
             if silent >= LIFE {
                 silent = 0;
                 if !runs::has_living(&self.name, BOARD_0) {
-                    // Board 0 may have ended the run since the pulse was read.
                     let over = self.pulse()?.is_none_or(|pulse| pulse.over);
                     return Ok(if over { MemberEnd::Over } else { MemberEnd::Orphaned });
                 }
@@ -264,7 +233,6 @@ impl Member {
         }
     }
 
-    /// The present pulse; `None` without ports.
     fn pulse(&self) -> Result<Option<SystemPulse>, DecodeError> {
         self.ports.as_ref().map(|ports| ports.taker.pulse()).transpose()
     }
@@ -278,8 +246,7 @@ impl Member {
         started.elapsed() < LOOK
     }
 
-    /// Open the neighbours that have joined or were replaced since the last call; true if all are there. The board is
-    /// ready when this succeeds for the first time.
+    /// Open the neighbours that have joined or were replaced since the last call; true if all are there.
     fn follow(&mut self, pulse: &SystemPulse) -> Result<bool, MemberError> {
         let Some(ports) = &mut self.ports else { return Ok(false) };
         // The tick whose outputs this board still needs for the next tick, if it has run.
@@ -312,7 +279,6 @@ impl Member {
         Ok(complete)
     }
 
-    /// Run one tick.
     fn step(&mut self, pulse: &SystemPulse, data: &TaskData<'_>) -> Result<(), MemberError> {
         let _section = Section::enter();
         let started = Instant::now();
@@ -334,7 +300,6 @@ impl Member {
         Ok(())
     }
 
-    /// Report the result of a check if it is new.
     fn tell(&mut self, checked: Checked) {
         let Some(ports) = &mut self.ports else { return };
         if self.report.checked != checked {

@@ -8,8 +8,7 @@
 //! | 6     | Task, Subtask                                                                               |
 //! | 8     | Quick Change, the grippers; the Active Pedestal with its hand and table                     |
 //!
-//! In the original (III.2) the pedestal has its own rack, on the other side of the factory network; here it shares the
-//! board of the grippers, because its hand is a gripper.
+//! In the original (III.2) the pedestal has its own rack, on the other side of the factory network.
 //!
 //! A tick of board 0 ([`coordinator`]) and of another board ([`member`]):
 //!
@@ -24,13 +23,11 @@
 //!   gathers the halves of tick k: common memory
 //! ```
 //!
-//! So no board can be ahead of another by more than one tick, and two halves are enough: while a fast board writes tick
-//! k, a slow one still reads k-1 from the other half ([`exchange`]). The pulse only wakes; the number that a board
-//! reads determines its action, so a lost or repeated pulse changes nothing.
+//! No board can be ahead of another by more than one tick, so two halves are enough ([`exchange`]). The pulse only
+//! wakes; the number that a board reads determines its action, so a lost or repeated pulse has no effect.
 //!
-//! The blackboards between the boards are not those for other programs ([`crate::memory`]): for these, board 0
-//! publishes common memory, as in a run on one board. So an observer finds the same services for every distribution of
-//! the processes, is not affected by the restart of a board, and cannot delay one.
+//! Board 0 publishes common memory for other programs ([`crate::memory`]) as on one board: an observer finds the same
+//! services for every distribution of the processes, and cannot delay a board.
 
 pub mod coordinator;
 pub mod exchange;
@@ -49,18 +46,15 @@ pub use lost::{Lost, SplitError};
 pub use member::{BoardData, Member, MemberError};
 pub use pulse::{Checked, Epochs, Fingerprint};
 
-/// A board with control processes; board 0 has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Board {
     Two,
-    /// T3 Interface.
     Four,
     Six,
     Eight,
 }
 
-/// The boards of a run that is waiting for its boards; for each, true if its process has joined. `None` if the run does
-/// not exist or has begun.
+/// The boards that a run waits for; true if the board has joined. `None` if the run does not exist or has begun.
 #[must_use]
 pub fn coming_up(name: &RunName) -> Option<Vec<(Board, bool)>> {
     let is_there = |role| memory::is_there(name, role);
@@ -85,7 +79,6 @@ impl Board {
         }
     }
 
-    /// Index in [`Board::ALL`].
     #[must_use]
     pub const fn index(self) -> usize {
         match self {
@@ -115,7 +108,6 @@ impl Board {
         Self::ALL.iter().copied().filter(move |board| *board != self)
     }
 
-    /// The names of its processes, as text for messages.
     #[must_use]
     pub fn process_names(self) -> String {
         self.processes().map(ProcessId::text).collect::<Vec<_>>().join(", ")

@@ -1,11 +1,8 @@
 //! The system pulse (II.2.3) and the stamps that answer it.
 //!
-//! Board 0 owns the service `pulse`: the facts of the run for every board ([`RunCard`]), and for each tick its number
-//! and the external inputs ([`SystemPulse`]). It is not doubled: board 0 gives the next pulse only after all boards
-//! have stamped this one. Each board owns a service with its [`BoardReport`], which it writes last in a tick.
-//!
-//! Two event services wake the processes: `pulse/wake` the boards, `pulse/done` board 0. Events carry no data; a
-//! process that wakes reads a number.
+//! Board 0 owns the service `pulse`: the facts of the run ([`RunCard`]), and each tick's number and external inputs
+//! ([`SystemPulse`]). Each board owns a service with its [`BoardReport`], which it writes last in a tick. Two event
+//! services wake the processes; events carry no data.
 
 use std::{fmt::Debug, time::Duration};
 
@@ -42,7 +39,6 @@ pub struct Fingerprint {
 }
 
 impl Fingerprint {
-    /// The fingerprint of this program with these task data and this job.
     #[must_use]
     pub fn of<'a>(
         commit: &str,
@@ -137,11 +133,9 @@ pub struct BoardReport {
     pub checked: Checked,
 }
 
-/// Keys of the slots of [`PULSE_SERVICE`].
 const PULSE: u32 = 0;
 const CARD: u32 = 1;
-/// Key of the only slot of a board's service.
-const REPORT: u32 = 0;
+const REPORT: u32 = 0; // key of the only slot of a board's service
 
 const PULSE_SERVICE: &str = "pulse";
 const WAKE: &str = "pulse/wake";
@@ -180,14 +174,12 @@ fn notifier(
 
 /// Sleep until a notification comes or the time has passed. A signal ends the sleep early.
 pub(super) fn sleep(listener: &Listener<ipc::Service>, at_most: Duration) {
-    // The sender and number of notifications do not matter: the caller reads numbers. Without a working listener the
-    // caller checks more often, but does not busy-wait.
+    // Without a working listener the caller checks more often, but does not busy-wait.
     if listener.timed_wait(|_| (), at_most).is_err() {
         std::thread::sleep(at_most.min(Duration::from_millis(1)));
     }
 }
 
-/// Board 0's side.
 pub(super) struct PulseGiver {
     pulse: SlotWriter<{ slot::size::<SystemPulse>() }, SystemPulse>,
     wake: Notifier<ipc::Service>,
@@ -214,8 +206,7 @@ impl PulseGiver {
         self.wake();
     }
 
-    /// Wake the boards once more. Board 0 detects a board that cannot be woken, because it has ended or does not empty
-    /// its socket, by its missing stamp.
+    /// Wake the boards once more. A missing stamp reveals a board that cannot be woken.
     pub(super) fn wake(&self) {
         let _ = self.wake.notify();
     }
@@ -274,7 +265,6 @@ impl ReportWriter {
     }
 }
 
-/// A board's report as board 0 reads it.
 pub(super) struct ReportReader(SlotReader<{ slot::size::<BoardReport>() }, BoardReport>);
 
 impl ReportReader {
@@ -286,7 +276,6 @@ impl ReportReader {
         ServiceReader::open(node, board.name(), epoch)?.slot(REPORT).map(Self)
     }
 
-    /// The last tick that the board has stamped, and its report.
     pub(super) fn read(&self) -> Result<(Tick, BoardReport), DecodeError> {
         self.0.read()
     }

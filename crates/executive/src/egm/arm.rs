@@ -1,5 +1,5 @@
-//! Kinematics of a robot with a spherical wrist, read from its file: the axis angles for a pose, and why a motion is
-//! not possible. While EGM runs, the robot itself computes this; `rcs-run check --robot` computes it beforehand.
+//! Kinematics of a robot with a spherical wrist, read from its file. While EGM runs, the robot itself computes this;
+//! `rcs-run check --robot` computes it beforehand.
 //!
 //! Lengths are named as in Brandstötter, Angerer, Hofbaur, "An analytical solution of the inverse kinematics problem of
 //! industrial serial manipulators with an ortho-parallel basis and a spherical wrist" (2014); the crate
@@ -23,8 +23,7 @@ use serde::Deserialize;
 
 use crate::egm::pose_entry::{KIND, PoseEntry};
 
-/// Axis angles, radians.
-pub type Axes = [f64; 6];
+pub type Axes = [f64; 6]; // radians
 
 /// The table `[arm]` of the file: mm, degrees, degrees/s.
 #[derive(Clone, Debug, Deserialize)]
@@ -47,25 +46,18 @@ pub(crate) struct ArmText {
     tool: PoseEntry,
 }
 
-/// Why the arm cannot follow a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Hindrance {
-    /// No axis angles bring the tool to the pose.
     OutOfReach,
-    /// An axis would be beyond its limit.
     Limit {
-        /// Index of the axis, from 0.
-        axis: usize,
+        axis: usize, // index of the axis, from 0
         by: f64,
     },
     /// An axis would have to turn faster than it can: the wrist is near its singularity.
     Speed {
-        /// Index of the axis, from 0.
-        axis: usize,
-        /// Speed needed, degrees/s.
-        needed: f64,
-        /// Greatest speed of the axis, degrees/s.
-        most: f64,
+        axis: usize, // index of the axis, from 0
+        needed: f64, // degrees/s
+        most: f64,   // greatest speed of the axis, degrees/s
     },
 }
 
@@ -87,21 +79,15 @@ impl fmt::Display for Hindrance {
     }
 }
 
-/// The arm: kinematics, limits and frames.
 #[derive(Clone, Debug)]
 pub struct Arm {
     name: String,
     kinematics: OPWKinematics,
-    /// Angle of axis 5, rad, at which the kinematics has a straight wrist.
-    straight: f64,
-    /// Least and greatest angle of each axis, rad.
-    limits: [[f64; 2]; 6],
-    /// Greatest speed of each axis, rad/s.
-    speeds: Axes,
-    /// Pose of the work object in the robot's base frame.
-    work_object: Pose,
-    /// Pose of the tool in tool0, the frame of the flange.
-    tool: Pose,
+    straight: f64,         // angle of axis 5, rad, at which the kinematics has a straight wrist
+    limits: [[f64; 2]; 6], // least and greatest angle of each axis, rad
+    speeds: Axes,          // greatest speed of each axis, rad/s
+    work_object: Pose,     // pose of the work object in the robot's base frame
+    tool: Pose,            // pose of the tool in tool0, the frame of the flange
 }
 
 impl Arm {
@@ -147,8 +133,7 @@ impl Arm {
         &self.name
     }
 
-    /// All axis angles, rad, that bring the tool to a pose in the work object, within the limits of the axes. A turn is
-    /// added to an axis, or subtracted, only if its limits require it.
+    /// All axis angles, rad, that bring the tool to a pose in the work object, within the limits of the axes.
     #[must_use]
     pub fn solutions(&self, tool: &Pose) -> Vec<Axes> {
         let mut solutions = self.kinematics.inverse(&self.flange(tool));
@@ -192,16 +177,12 @@ impl Arm {
 #[derive(Clone, Debug)]
 pub struct Track {
     axes: Axes,
-    /// The axis, from 0, that came nearest to a limit, and the margin, degrees.
-    pub margin: (usize, f64),
-    /// Least angle of axis 5 from the straight wrist, degrees.
-    pub wrist: f64,
-    /// Greatest speed of each axis, degrees/s.
-    pub speeds: Axes,
+    pub margin: (usize, f64), // the axis, from 0, that came nearest to a limit, and the margin, degrees
+    pub wrist: f64,           // least angle of axis 5 from the straight wrist, degrees
+    pub speeds: Axes,         // greatest speed of each axis, degrees/s
 }
 
 impl Track {
-    /// Starts at rest at the given axis angles.
     #[must_use]
     pub fn begin(arm: &Arm, axes: &Axes) -> Self {
         let mut track = Self { axes: *axes, margin: (0, f64::INFINITY), wrist: 180.0, speeds: [0.0; 6] };
@@ -209,10 +190,7 @@ impl Track {
         track
     }
 
-    /// Moves to the next pose of the tool in the work object within the given time, seconds.
-    ///
-    /// # Errors
-    /// [`Hindrance`]; the arm then keeps its axis angles.
+    /// Moves to the next pose within a time, s. On error, the arm keeps its axis angles.
     pub fn go(&mut self, arm: &Arm, tool: &Pose, seconds: f64) -> Result<(), Hindrance> {
         let solutions = arm.kinematics.inverse_continuing(&arm.flange(tool), &self.axes);
         let axes = *solutions.first().ok_or(Hindrance::OutOfReach)?;
@@ -255,11 +233,10 @@ mod tests {
 
     /// From the drawing of the IRB 6700-200/2.60: all axes at 0, forearm level, tool0 1662.5 mm in front, 2105 mm high.
     #[test]
-    fn the_arm_is_the_one_of_its_drawing() {
+    fn arm_has_the_lengths_of_its_drawing() {
         let arm = arm(TEXT);
         let at_zero = arm.kinematics.forward(&[0.0; 6]);
         assert!((at_zero.translation * 1e3 - DVec3::new(1662.5, 0.0, 2105.0)).length() < 1e-9, "{at_zero:?}");
-        // The z axis of tool0 points forward.
         assert!((at_zero.rotation * DVec3::Z - DVec3::X).length() < 1e-9);
         // Axis 2 leans the arm forward, axis 3 lowers the forearm.
         assert!(arm.kinematics.forward(&[0.0, 0.1, 0.0, 0.0, 0.0, 0.0]).translation.x > 1.7);
@@ -301,7 +278,7 @@ mod tests {
 
     /// Axis 6 has a range of more than a turn; the motion does not jump by a turn at 180 degrees.
     #[test]
-    fn turns_are_carried_along() {
+    fn motion_continues_beyond_180_degrees() {
         let arm = arm(TEXT);
         let mut track = Track::begin(&arm, &[0.3, 0.2, -0.1, 0.4, 0.5, 3.0]);
         for _ in 0..30 {
@@ -313,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_with_a_mistake_names_it() {
+    fn error_in_a_robot_file_is_named() {
         for (from, to, word) in [
             ("signs = [1, 1", "signs = [1, 0", "arm.signs[1]: expected 1 or -1, found 0"),
             (

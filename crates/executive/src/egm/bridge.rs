@@ -1,8 +1,7 @@
 //! The adapter between the DEPC function of the controller and an EGM robot.
 //!
 //! A step takes the host's bytes and the newest sample, and gives at most one order. While the function runs, every
-//! tick orders a point: the position just accepted, or the previous one again, because a robot without a new set point
-//! keeps the old one. So the path ends exactly at its last point, and a tick without a command only takes time.
+//! tick orders a point, the new position or the previous one again: the path ends exactly at its last point.
 //!
 //! | state of the robot | state of the DEPC function |
 //! |---|---|
@@ -25,7 +24,6 @@ use geometry::{frame::Frame, kinematics::T3, pose::WireFrame};
 
 use crate::egm::{Line, Order, Placement};
 
-/// Outputs of a step to the host.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BridgeOutputs {
     pub tx: LinkBytes,
@@ -34,12 +32,10 @@ pub struct BridgeOutputs {
     pub busy: bool,
 }
 
-/// The adapter: the controller's side of DEPC and the robot behind it.
 pub struct Bridge {
     controller: Controller,
     robot: Border,
-    /// The supervision of the robot, if the host does not supervise it.
-    supervision: Option<Supervision>,
+    supervision: Option<Supervision>, // the supervision of the robot, if the host does not supervise it
 }
 
 /// The path of the robot, and its expected lag, ms.
@@ -55,10 +51,8 @@ struct Border {
     sample: Sample,
     /// The last position of the path: its DEPC words, and the target pose that they stand for. `None` without a path.
     path: Option<(Plate, Pose)>,
-    /// The angles D and R of the next report are chosen near these.
-    near: Plate,
-    /// Why a path cannot continue or begin.
-    warning: Option<Warning>,
+    near: Plate,              // the angles D and R of the next report are chosen near these
+    warning: Option<Warning>, // why a path cannot continue or begin
     order: Option<Order>,
     now: u64,
 }
@@ -97,7 +91,6 @@ impl Robot for Border {
 }
 
 impl Border {
-    /// Holds the robot where it is, and ends its path.
     fn hold(&mut self) {
         if self.path.take().is_some() {
             (self.order, self.warning) = (Some(Order::Hold), Some(Warning::OffPath));
@@ -121,7 +114,6 @@ impl Border {
 }
 
 impl Bridge {
-    /// An adapter whose DEPC function has not begun.
     #[must_use]
     pub fn new(limits: Limits, placement: Placement) -> Self {
         Self {
@@ -140,8 +132,8 @@ impl Bridge {
         }
     }
 
-    /// Supervises the robot: one that is off the path of its expected lag is held where it is. For hosts that get no
-    /// feedback from the robot; the T3 Interface of a run does it by itself (docs/design/link.md "Following").
+    /// Supervises the robot: one that is off the path of its expected lag is held where it is. For hosts without
+    /// feedback from the robot; the T3 Interface does it by itself (docs/design/link.md "Following").
     #[must_use]
     pub fn supervised(self, lag_ms: u16) -> Self {
         Self { supervision: Some(Supervision { track: Track::default(), lag_ms }), ..self }
@@ -184,15 +176,14 @@ impl Bridge {
         }
     }
 
-    /// Executes one tick: passes the host's bytes and its DTR (here `cts`) to the DEPC function, with the newest
-    /// sample. With `hold` the robot stays where it is, until the host begins a path again.
+    /// Executes one tick: passes the host's bytes and its DTR (here `cts`) to the DEPC function. With `hold` the robot
+    /// stays where it is, until the host begins a path again.
     pub fn step(&mut self, line: &mut Line, rx: &LinkBytes, cts: bool, hold: bool) -> BridgeOutputs {
         self.robot.look(line.sample(), line.now());
         if hold || self.is_off_path() {
             self.robot.hold();
         }
         if matches!(self.robot.sample.link, LinkState::Waiting | LinkState::Standby(_)) {
-            // The robot's program has ended, so the DEPC function ends too.
             self.controller = Controller::new(*self.controller.limits());
             self.robot.path = None;
             self.follow();
@@ -205,7 +196,6 @@ impl Bridge {
         let before = self.robot.path;
         let out = self.controller.step(&inputs, &mut self.robot);
         if let (Some((_, to)), None) = (before, &self.robot.order) {
-            // Without a command, the set point is repeated.
             self.robot.order = Some(Order::Point { at: self.robot.now, to });
         }
         if let Some(order) = &self.robot.order {
@@ -214,7 +204,6 @@ impl Bridge {
         self.follow();
         BridgeOutputs { tx: out.tx, dtr: out.dtr, busy: out.moving || out.tx.length > 0 }
     }
-    /// True if the robot is supervised, and off the path of its expected lag.
     fn is_off_path(&self) -> bool {
         let Some(Supervision { track, lag_ms }) = &self.supervision else { return false };
         let here = self.robot.placement.tool_frame(&self.robot.sample.feedback);

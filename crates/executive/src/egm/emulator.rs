@@ -1,12 +1,12 @@
-//! An emulated EGM robot in pose mode: states and control loop of the controller as in the application manual
-//! (3HAC073318), with the arm of the T3. It has not been compared with a controller of ABB.
+//! An emulated EGM robot in pose mode after the application manual (3HAC073318), with the arm of the T3. It has not
+//! been compared with a controller of ABB.
 //!
 //! ```text
 //!   speed = k (reference - position) + speedRef, limited to MaxSpeedDeviation, through a low pass, ramped in
 //! ```
 //!
-//! References are poses; the loop is closed on the joints. Each cycle reads one message from the queue; without a
-//! message, the last reference and its speed stay in effect.
+//! References are poses; the loop is closed on the joints. Each cycle reads one message; without one, the last
+//! reference and its speed stay in effect.
 
 use std::{collections::VecDeque, f64::consts::TAU};
 
@@ -20,14 +20,10 @@ use geometry::kinematics::{HOME_JOINTS, Joints, T3};
 
 use crate::egm::Placement;
 
-/// Cycle time of the robot, ns.
-pub const CYCLE_NS: u64 = 4_032_000;
-/// Cycle time of the robot, s.
-const CYCLE_S: f64 = 0.004_032;
-/// Greatest number of messages in the queue.
-const MOST_WAITING: usize = 10;
-/// The robot is in a fine point if no joint is faster than this, rad/s.
-const FINE: f64 = 1e-4;
+pub const CYCLE_NS: u64 = 4_032_000; // cycle time of the robot, ns
+const CYCLE_S: f64 = 0.004_032; // cycle time of the robot, s
+const MOST_WAITING: usize = 10; // greatest number of messages in the queue
+const FINE: f64 = 1e-4; // the robot is in a fine point if no joint is faster than this, rad/s
 /// `mciConvergenceMet` is set if all joints are nearer to their reference than this, rad.
 const CONVERGED: f64 = 1e-4;
 
@@ -42,8 +38,7 @@ pub struct Tuning {
     pub ramp_s: f64,
     /// `\MaxSpeedDeviation`: greatest speed of a joint, degrees/s. The controller's default is 1.0.
     pub max_speed_deviation: f64,
-    /// `\CommTimeout`, s.
-    pub comm_timeout_s: f64,
+    pub comm_timeout_s: f64, // s
     /// "Do Not Restart after Motors Off".
     pub do_not_restart: bool,
     /// Increment of the sequence number per message.
@@ -65,10 +60,8 @@ impl Default for Tuning {
     }
 }
 
-/// Why EGM does not run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stopped {
-    /// The program has not reached the EGM instruction, or was stopped.
     Program,
     Emergency,
     /// No message for `\CommTimeout`: ERR_UDPUC_COMM.
@@ -95,17 +88,12 @@ pub struct EgmRobot {
     placement: Placement,
     joints: Joints,
     speed: Joints,
-    /// Target of the joints, rad, and its speed, rad/s.
-    reference: Option<(Joints, Joints)>,
-    /// `None` while EGM runs.
-    stopped: Option<Stopped>,
+    reference: Option<(Joints, Joints)>, // target of the joints, rad, and its speed, rad/s
+    stopped: Option<Stopped>,            // `None` while EGM runs
     motors: bool,
-    /// EGM waits for a fine point before it runs.
-    starting: bool,
-    /// Time since EGM began to run, s.
-    running_s: f64,
-    /// Time since the last message was read, s.
-    silent_s: f64,
+    starting: bool, // EGM waits for a fine point before it runs
+    running_s: f64, // time since EGM began to run, s
+    silent_s: f64,  // time since the last message was read, s
     waiting: VecDeque<Sensor>,
     seqno: u32,
     time_ns: u64,
@@ -168,8 +156,7 @@ impl EgmRobot {
         self.stopped = self.stopped.or(Some(Stopped::Program));
     }
 
-    /// Switches the motors on after an emergency stop. With "Do Not Restart after Motors Off" the program waits for a
-    /// start; without it EGM continues with its last reference.
+    /// Motors on. With "Do Not Restart after Motors Off" the program waits for a start.
     pub fn motors_on(&mut self) {
         self.motors = true;
         if self.stopped == Some(Stopped::Emergency) && !self.tuning.do_not_restart {
@@ -178,7 +165,6 @@ impl EgmRobot {
         }
     }
 
-    /// Starts the program, which reaches the EGM instruction: EGM begins at rest, at the robot's position.
     pub fn start(&mut self) {
         if self.motors {
             (self.stopped, self.starting, self.reference) = (None, true, None);
@@ -187,10 +173,7 @@ impl EgmRobot {
         }
     }
 
-    /// Puts a received datagram into the queue.
-    ///
-    /// # Errors
-    /// The decoding error; the robot does not answer.
+    /// Puts a received datagram into the queue. Errors: the decoding error; the robot does not answer.
     pub fn receive(&mut self, datagram: &[u8]) -> Result<(), egm::Error> {
         let message = Sensor::decode(datagram)?;
         if self.waiting.len() < MOST_WAITING {
@@ -211,7 +194,6 @@ impl EgmRobot {
             if let Some(message) = message {
                 self.take(&message);
             }
-            // The robot waits for its first message without a time limit.
             if self.reference.is_some() && self.silent_s >= self.tuning.comm_timeout_s {
                 self.stopped = Some(Stopped::Communication);
             }
@@ -237,7 +219,6 @@ impl EgmRobot {
         }
     }
 
-    /// Joint angles and joint speeds for a pose and its speed.
     fn joints_for(&self, pose: &Pose, speed: &Twist) -> Option<(Joints, Joints)> {
         let solve = |pose: &Pose, near: &Joints| {
             let joints = T3.inverse(&self.placement.tool_frame(pose), near).ok()?;
@@ -354,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn speed_ref_takes_the_lag_away() {
+    fn speed_ref_removes_the_lag() {
         let follow = |with_speed: bool| {
             let mut bench = Bench::new(Tuning::default());
             let twist = Twist { linear: [0.0, 0.0, 100.0], angular: [0.0; 3] };

@@ -1,27 +1,19 @@
-//! What the bridge and the host of a robot exchange: orders, reports, and the datagrams that the host refused.
-
 use std::{fmt, net::SocketAddr};
 
 use egm::{Error, Host, Pose, Sample};
 
-/// An order of the bridge to the host. Times are ns of the line's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Order {
     Begin {
-        /// Time of the order, ns of the line's clock.
-        at: u64,
+        at: u64, // time of the order, ns of the line's clock
         from: Pose,
     },
-    /// The next point of the path.
     Point {
-        /// Time of the command, ns of the line's clock.
-        at: u64,
+        at: u64, // time of the command, ns of the line's clock
         to: Pose,
     },
-    /// Come to rest on the path.
     Stop {
-        /// Time of the order, ns of the line's clock.
-        at: u64,
+        at: u64, // time of the order, ns of the line's clock
     },
     /// Stay where the robot is: it has left its path.
     Hold,
@@ -45,19 +37,16 @@ impl Order {
     }
 }
 
-/// State of the host after a message, with the times of that message.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     pub sample: Sample,
-    /// Time since the previous message, ns; `None` if there is none.
+    /// Time since the previous message, ns; `None` for the first one.
     pub cycle: Option<u64>,
-    /// Time from the message to its answer, ns.
-    pub answered: u64,
+    pub answered: u64, // time from the message to its answer, ns
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
-    /// It is not a valid message of a robot.
     Message(Error),
     /// It is not from the address that `from=` names.
     NotAllowed,
@@ -71,13 +60,10 @@ pub struct Refused {
     pub cause: Cause,
 }
 
-/// The refused datagrams since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Refusals {
-    /// Number of datagrams that are not valid messages of a robot.
-    pub invalid: u64,
-    /// Number of datagrams from other addresses than that of the robot.
-    pub elsewhere: u64,
+    pub invalid: u64,   // not valid messages of a robot
+    pub elsewhere: u64, // from other addresses than the robot's
     /// The last one; `None` without any, and for an emulated robot in this process.
     pub last: Option<Refused>,
 }

@@ -1,4 +1,4 @@
-//! The link between the bridge and a robot: takes orders, gives samples, counts refused datagrams.
+//! The link between the bridge and a robot.
 
 use egm::Sample;
 
@@ -8,7 +8,6 @@ use crate::egm::{
     udp::UdpLine,
 };
 
-/// The link to a robot: real or emulated.
 pub enum Line {
     /// Over UDP, with its own thread.
     Udp(Box<UdpLine>),
@@ -17,8 +16,8 @@ pub enum Line {
 }
 
 impl Line {
-    /// The time of the line's clock for a tick that begins now, ns. The clock of a simulated line stands still between
-    /// calls of [`Self::advance`].
+    /// The time of the line's clock for a tick that begins now, ns. The clock of a simulated line moves only in
+    /// [`Self::advance`].
     #[must_use]
     pub fn now(&self) -> u64 {
         match self {
@@ -27,7 +26,6 @@ impl Line {
         }
     }
 
-    /// Gives an order to the host.
     pub fn order(&mut self, order: &Order) {
         match self {
             Self::Udp(line) => line.order(order),
@@ -42,7 +40,6 @@ impl Line {
         }
     }
 
-    /// Calls `take` once for each report since the last call.
     pub fn reports(&mut self, take: impl FnMut(&Report)) {
         match self {
             Self::Udp(line) => line.reports(take),
@@ -57,7 +54,6 @@ impl Line {
             Self::Simulated(line) => line.sample(),
         }
     }
-    /// The refused datagrams since the start.
     #[must_use]
     pub fn refusals(&self) -> Refusals {
         match self {

@@ -9,14 +9,6 @@
 //!     │ EgmSensor                              ▲ EgmRobot, every 4 ms
 //!   robot controller, or emulator::EgmRobot
 //! ```
-//!
-//! * [`options`]: parses `egm:[ADDRESS:]PORT[,OPTION...]`;
-//! * [`placement`]: the frames of the robot, which connect the T3's world with its work object, from a file;
-//! * [`arm`]: the kinematics of the robot, from the same file, to check reach and axis speeds beforehand;
-//! * [`bridge`]: the adapter between the DEPC function and the robot;
-//! * [`exchange`]: orders and reports between them;
-//! * [`mod@line`]: the host with a socket ([`udp`]) or with an emulated robot ([`simulated`]);
-//! * [`emulator`]: an emulated EGM robot with the arm of the T3; [`network`]: simulated faults of UDP.
 
 pub mod arm;
 pub mod bridge;

@@ -3,26 +3,19 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Fault rates of the network, for each direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quality {
-    /// Datagrams lost, percent.
-    pub loss: f64,
-    /// Datagrams that arrive twice, percent.
-    pub double: f64,
-    /// Datagrams delayed by 10 ms more, so that others overtake them, percent.
-    pub reorder: f64,
-    /// Delay of every datagram, ms.
-    pub delay_ms: f64,
+    pub loss: f64,     // datagrams lost, percent
+    pub double: f64,   // datagrams that arrive twice, percent
+    pub reorder: f64,  // datagrams delayed by 10 ms more, so that others overtake them, percent
+    pub delay_ms: f64, // ms
     /// Jitter, ms: up to this much random extra delay per datagram; datagrams can overtake each other.
     pub jitter_ms: f64,
-    /// Start of a time in which every datagram is lost, s.
-    pub silent_at_s: f64,
+    pub silent_at_s: f64, // start of a time in which every datagram is lost, s
     pub silent_for_s: f64,
 }
 
-/// Extra delay of a datagram that is to be overtaken, ms.
-const OVERTAKEN_MS: f64 = 10.0;
+const OVERTAKEN_MS: f64 = 10.0; // extra delay of a datagram that is to be overtaken, ms
 /// Greatest number of datagrams in transit; the network loses any beyond it.
 const MOST_UNDER_WAY: usize = 256;
 
@@ -30,8 +23,7 @@ const MOST_UNDER_WAY: usize = 256;
 pub struct Network {
     quality: Quality,
     dice: ChaCha8Rng,
-    /// Arrival time, ns, and datagram, in the order of sending.
-    under_way: Vec<(u64, Vec<u8>)>,
+    under_way: Vec<(u64, Vec<u8>)>, // arrival time, ns, and datagram, in the order of sending
 }
 
 fn nanoseconds(ms: f64) -> u64 {
@@ -40,13 +32,11 @@ fn nanoseconds(ms: f64) -> u64 {
 }
 
 impl Network {
-    /// A network with no datagrams in transit.
     #[must_use]
     pub fn new(quality: Quality, seed: u64) -> Self {
         Self { quality, dice: ChaCha8Rng::seed_from_u64(seed), under_way: Vec::new() }
     }
 
-    /// Sends a datagram at the time `now`, ns.
     pub fn send(&mut self, now: u64, datagram: &[u8]) {
         let from = nanoseconds(self.quality.silent_at_s * 1e3);
         let silent = from..from.saturating_add(nanoseconds(self.quality.silent_for_s * 1e3));
@@ -88,7 +78,6 @@ impl Network {
 
     /// A random number in [0, 1).
     fn part(&mut self) -> f64 {
-        // 53 random bits make the fraction of an f64.
         (self.dice.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
@@ -113,14 +102,14 @@ mod tests {
     }
 
     #[test]
-    fn a_good_network_is_a_wire() {
+    fn network_without_faults_delivers_all_datagrams() {
         let all = arrivals(Quality::default(), 1);
         assert!(all.iter().zip(0..).all(|(found, number)| *found == (u64::from(number) * 4 * MS, number)));
         assert_eq!(all.len(), 200);
     }
 
     #[test]
-    fn the_disorders_are_visible_and_follow_from_the_seed() {
+    fn network_faults_follow_from_the_seed() {
         let quality =
             Quality { loss: 20.0, double: 10.0, jitter_ms: 20.0, delay_ms: 1.0, ..Default::default() };
         let all = arrivals(quality, 7);
@@ -136,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_silence_lasts_as_long_as_it_is_to() {
+    fn silence_has_its_duration() {
         let all = arrivals(Quality { silent_at_s: 0.1, silent_for_s: 0.2, ..Default::default() }, 1);
         assert!(all.iter().all(|(at, _)| !(100 * MS..300 * MS).contains(at)));
         assert_eq!(all.len(), 150);

@@ -20,10 +20,8 @@ use crate::egm::{
     simulated::SimulatedLine,
 };
 
-/// Time constant of the robot's position loop at the default gain of 5, ms.
-const LOOP_MS: u16 = 200;
-/// Permitted slack, ms.
-const SLACK_MS: RangeInclusive<u64> = 0..=200;
+const LOOP_MS: u16 = 200; // time constant of the robot's position loop at the default gain of 5, ms
+const SLACK_MS: RangeInclusive<u64> = 0..=200; // ms
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Peer {
@@ -42,8 +40,7 @@ pub struct EgmOptions {
     pub from: Option<IpAddr>,
     /// `speed-ref=on|off`: send the speed of the target with the target.
     pub speed_ref: bool,
-    /// `slack=MS`: how late a tick may be, ms.
-    pub slack_ms: u64,
+    pub slack_ms: u64, // `slack=MS`: how late a tick may be, ms
     /// Emulated robot only: settings of its program.
     pub tuning: Tuning,
     /// Emulated robot only: the network to it.
@@ -53,7 +50,6 @@ pub struct EgmOptions {
 }
 
 impl EgmOptions {
-    /// A robot with all options at their defaults.
     #[must_use]
     pub fn new(peer: Peer) -> Self {
         Self {
@@ -68,10 +64,8 @@ impl EgmOptions {
         }
     }
 
-    /// Parses the text after `egm:` for an emulator. Without an address, the emulator sends to this machine.
-    ///
-    /// # Errors
-    /// What was expected and what was found, as text for messages.
+    /// Parses the text after `egm:` for an emulator, which by default sends to this machine. Errors: the expected and
+    /// the found text.
     pub fn to_emulate(text: &str) -> Result<Self, String> {
         let (place, options) = text.split_once(',').unwrap_or((text, ""));
         let mut emulated = Self::parse(place, Ipv4Addr::LOCALHOST)?;
@@ -85,7 +79,6 @@ impl EgmOptions {
         Ok(emulated)
     }
 
-    /// Parses the text after `egm:`. `address` is used if the text names none.
     fn parse(text: &str, address: Ipv4Addr) -> Result<Self, String> {
         let mut parts = text.split(',');
         let place = parts.next().unwrap_or_default();
@@ -127,7 +120,6 @@ impl EgmOptions {
         Ok(())
     }
 
-    /// The numeric options of an emulated robot: name, variable, range.
     fn numbers(&mut self) -> [(&'static str, &mut f64, RangeInclusive<f64>); 12] {
         let (tuning, quality) = (&mut self.tuning, &mut self.quality);
         [
@@ -146,7 +138,6 @@ impl EgmOptions {
         ]
     }
 
-    /// Sets an option of the emulated robot.
     fn emulate(&mut self, name: &str, value: &str) -> Result<(), String> {
         match name {
             "do-not-restart" => self.tuning.do_not_restart = switch(name, value)?,
@@ -168,7 +159,6 @@ impl EgmOptions {
         Ok(())
     }
 
-    /// All options that differ from [`EgmOptions::new`], with their values as text.
     fn set_options(&self) -> Vec<(&'static str, String)> {
         let word = |on: bool| if on { "on" } else { "off" }.to_owned();
         let (mut own, mut new) = (self.clone(), Self::new(self.peer));
@@ -186,25 +176,18 @@ impl EgmOptions {
         set
     }
 
-    /// The robot's file; that of a robot in the place of the T3 if none is named.
-    ///
-    /// # Errors
-    /// [`PlacementError`] if the file cannot be used.
+    /// The robot's file; if none is named, that of a robot in the place of the T3.
     pub fn file(&self, data: &Path) -> Result<RobotFile, PlacementError> {
         let Some(robot) = &self.robot else { return Ok(RobotFile::default()) };
         RobotFile::load(&ROBOTS.find(Path::new(robot), data)?)
     }
 
-    /// The frames of the robot.
-    ///
-    /// # Errors
-    /// [`PlacementError`] if the file cannot be used.
     pub fn placement(&self, data: &Path) -> Result<Placement, PlacementError> {
         self.file(data).map(|file| file.placement)
     }
 
-    /// Expected lag of a robot whose file states none, ms: that of a robot that gets the speed of its target, or in
-    /// addition the time constant of a position loop with a gain of 5.
+    /// Expected lag of a robot whose file states none, ms: without the speed of its target, the time constant of a
+    /// position loop with a gain of 5 is added.
     #[must_use]
     pub const fn lag_ms(&self) -> u16 {
         if self.speed_ref { LAG_MS } else { LAG_MS + LOOP_MS }
@@ -227,7 +210,6 @@ impl EgmOptions {
         SimulatedLine::new(self.settings(placement), robot, to_host, to_robot)
     }
 
-    /// The network to the host, and the network to the robot.
     #[must_use]
     pub fn networks(&self) -> [Network; 2] {
         [0, 1].map(|direction| Network::new(self.quality, self.seed.wrapping_mul(2).wrapping_add(direction)))
@@ -245,14 +227,12 @@ fn switch(name: &str, value: &str) -> Result<bool, String> {
 impl FromStr for EgmOptions {
     type Err = String;
 
-    /// Parses the options of a robot to listen for.
     fn from_str(text: &str) -> Result<Self, String> {
         Self::parse(text, Ipv4Addr::UNSPECIFIED)
     }
 }
 
 impl std::fmt::Display for EgmOptions {
-    /// The form that [`FromStr`] parses.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.peer {
             Peer::Udp(address) => write!(f, "egm:{address}"),

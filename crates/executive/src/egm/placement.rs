@@ -1,5 +1,5 @@
-//! The frames of a robot: the T3's world in the robot's work object, and the robot's tool in the T3's end plate. They
-//! come from a file such as `data/robots/same.toml`, which can also describe the robot's arm.
+//! The frames of a robot, from a file such as `data/robots/same.toml`: the T3's world in its work object, and its tool
+//! in the T3's end plate.
 
 use std::path::{Path, PathBuf};
 
@@ -21,10 +21,8 @@ use crate::egm::{
     pose_entry::{KIND, PoseEntry},
 };
 
-/// Millimetres per inch.
-const MM_PER_IN: f64 = 25.4;
-/// Limits of DEPC (A 2.3) in mm/s and rad/s. One position can be rounded and the next exact, so each end of a 40 ms
-/// period adds 0.01 in and 0.01 degree.
+const MM_PER_IN: f64 = 25.4; // millimetres per inch
+/// Limits of DEPC (A 2.3) in mm/s and rad/s. Rounding adds 0.01 in and 0.01 degree at each end of a 40 ms period.
 const SPEED: f64 = (14.0 + 0.5) * MM_PER_IN;
 /// See [`SPEED`]: each of three angles may turn by 1.0 rad/s.
 const TURN: f64 = 1.75;
@@ -36,7 +34,6 @@ pub enum PlacementError {
     Unknown(#[from] UnknownFile),
     #[error("the robot's frames {} cannot be read: {source}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
-    /// The contents are not as expected.
     #[error("the robot's file cannot be used: {}", .0.in_line())]
     Text(Box<Diagnostics>),
 }
@@ -49,12 +46,10 @@ struct Space {
     high: [f64; 3],
 }
 
-/// How the robot follows its targets.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Following {
-    /// Expected lag behind the positions sent, ms.
-    lag: f64,
+    lag: f64, // expected lag behind the positions sent, ms
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -73,7 +68,6 @@ pub struct RobotFile {
     pub placement: Placement,
     /// Expected lag behind the positions sent, ms, if the file states it.
     pub lag_ms: Option<u16>,
-    /// The arm of the robot, if the file describes it.
     pub arm: Option<Arm>,
 }
 
@@ -85,16 +79,11 @@ impl Following {
             let expected = format!("a whole number of ms from 0 to {MOST_LAG_MS}");
             problems.push(Problem::unlike(KIND.value, "following.lag", &expected, self.lag));
         }
-        // A whole number up to 1000.
         whole.then_some(self.lag as u16)
     }
 }
 
 impl RobotFile {
-    /// Reads a robot's file.
-    ///
-    /// # Errors
-    /// [`PlacementError`] if the file cannot be read or used.
     pub fn load(path: &Path) -> Result<Self, PlacementError> {
         let text = files::read_text(path)
             .map_err(|source| PlacementError::Read { path: path.to_owned(), source })?;
@@ -102,10 +91,7 @@ impl RobotFile {
         Self::from_toml(&source).map_err(|report| PlacementError::Text(Box::new(report)))
     }
 
-    /// Parses the text of a robot's file.
-    ///
-    /// # Errors
-    /// All problems of the text, with their places.
+    /// Parses the text of a robot's file. Errors: all problems of the text, with their places.
     pub fn from_toml(source: &Source) -> Result<Self, Diagnostics> {
         let mut file = None;
         Document::load(source, KIND, |text: &Text, stand_ins, problems| {
@@ -122,19 +108,15 @@ impl RobotFile {
     }
 }
 
-/// The text as the source of a robot's file.
 #[cfg(test)]
 pub(crate) fn source(text: &str) -> Source {
     Source { name: "robot.toml".to_owned(), text: text.into() }
 }
 
-/// The frames of a robot, and the limits of its targets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// Pose of the T3's world in the work object.
-    world: Pose,
-    /// Pose of the robot's tool in the T3's end plate.
-    tool: Pose,
+    world: Pose, // pose of the T3's world in the work object
+    tool: Pose,  // pose of the robot's tool in the T3's end plate
     limits: Limits,
 }
 
@@ -166,7 +148,6 @@ impl Placement {
         Some(Self { world, tool, limits })
     }
 
-    /// The limits that points and targets are checked against.
     #[must_use]
     pub const fn limits(&self) -> Limits {
         self.limits
@@ -223,7 +204,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_plate_comes_back(at in prop::array::uniform3(-80.0_f64..80.0), turn in prop::array::uniform3(-1.7_f64..1.7)) {
+        fn plate_round_trips_through_the_robot_frames(at in prop::array::uniform3(-80.0_f64..80.0), turn in prop::array::uniform3(-1.7_f64..1.7)) {
             let plate = Frame { position: at.into(), rotation: rotation_by(&turn.into()) };
             for placement in [Placement::default(), RobotFile::from_toml(&source(TEXT)).unwrap().placement] {
                 let back = placement.plate_frame(&placement.pose(&plate));
@@ -234,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn home_is_where_it_was_worked_out_to_be() {
+    fn home_equals_the_calculated_pose() {
         let home = T3.forward_plate(&HOME_JOINTS);
         let pose = Placement::default().pose(&home);
         assert!((pose.position[1] + 62.93 * 25.4).abs() < 0.3, "{pose:?}");
@@ -245,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_with_a_mistake_names_it() {
+    fn error_in_a_robot_file_is_named() {
         for (wrong, word) in [
             (TEXT.replace("0.7071068, 0.0", "0.9, 0.0"), "world.orientation"),
             (TEXT.replace("[tool]", "[tools]"), "tools"),

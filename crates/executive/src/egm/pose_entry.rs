@@ -20,10 +20,8 @@ pub(crate) const KIND: FileKind = FileKind {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PoseEntry {
-    /// Position, mm.
-    position: [f64; 3],
-    /// Unit quaternion w, x, y, z.
-    orientation: [f64; 4],
+    position: [f64; 3],    // mm
+    orientation: [f64; 4], // unit quaternion w, x, y, z
 }
 
 impl PoseEntry {

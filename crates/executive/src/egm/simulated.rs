@@ -11,7 +11,6 @@ use crate::egm::{
 /// Greatest number of reports kept between two calls: more than the robot has cycles in a tick.
 const MOST_REPORTS: usize = 64;
 
-/// The link to an emulated robot.
 pub struct SimulatedLine {
     host: Host,
     robot: EgmRobot,
@@ -24,7 +23,6 @@ pub struct SimulatedLine {
 }
 
 impl SimulatedLine {
-    /// A robot that begins to send at once.
     #[must_use]
     pub fn new(settings: Settings, robot: EgmRobot, to_host: Network, to_robot: Network) -> Self {
         let reports = Vec::with_capacity(MOST_REPORTS);
@@ -46,7 +44,6 @@ impl SimulatedLine {
     }
 
     pub(crate) fn order(&mut self, order: &Order) {
-        // The samples show whether the host refused the order.
         let _ = order.carry_out(&mut self.host);
     }
 
@@ -81,7 +78,6 @@ impl SimulatedLine {
 
     fn cycle(&mut self) {
         let mut buffer = [0; MOST_BYTES];
-        // The buffer has room for the longest message.
         if let Ok(datagram) = self.robot.cycle().encode(&mut buffer) {
             self.to_host.send(self.now, datagram);
         }
@@ -89,7 +85,6 @@ impl SimulatedLine {
 
     fn deliver_to_robot(&mut self) {
         if let Some((_, datagram)) = self.to_robot.arrived(self.now) {
-            // Only messages of the host arrive here, which are valid.
             let _ = self.robot.receive(&datagram);
         }
     }

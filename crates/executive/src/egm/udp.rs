@@ -1,5 +1,5 @@
-//! The host with a UDP socket in its own thread: it answers each datagram when it arrives. Orders and reports go
-//! through bounded ring buffers, so that neither thread waits for the other.
+//! The host with a UDP socket in its own thread, which answers each datagram when it arrives. Orders and reports go
+//! through bounded ring buffers: neither thread waits for the other.
 
 use std::{
     io::ErrorKind,
@@ -17,16 +17,13 @@ use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::egm::exchange::{Cause, Order, Refusals, Refused, Report};
 
-/// Capacity of the ring of orders: several ticks.
-const MOST_ORDERS: usize = 16;
-/// Capacity of the ring of reports: one second.
-const MOST_REPORTS: usize = 256;
-/// Capacity of the ring of refused datagrams: the last one of a tick that has more is not the newest.
+const MOST_ORDERS: usize = 16; // capacity of the ring of orders: several ticks
+const MOST_REPORTS: usize = 256; // capacity of the ring of reports: one second
+/// Capacity of the ring of refused datagrams; in a tick with more, the last one is not the newest.
 const MOST_REFUSED: usize = 64;
 /// Longest wait for a datagram before the thread checks for orders and for the time.
 const WAIT: Duration = Duration::from_millis(4);
-/// Longest datagram of EGM, bytes.
-const MOST_RECEIVED: usize = 2048;
+const MOST_RECEIVED: usize = 2048; // longest datagram of EGM, bytes
 
 #[derive(Debug, thiserror::Error)]
 #[error("EGM cannot listen at UDP {address}: {source}")]
@@ -35,14 +32,12 @@ pub struct UdpError {
     source: std::io::Error,
 }
 
-/// Numbers of refused datagrams, of both threads.
 #[derive(Default)]
 struct Counts {
     invalid: AtomicU64,
     elsewhere: AtomicU64,
 }
 
-/// The link to a robot over UDP.
 pub struct UdpLine {
     origin: Instant,
     orders: Producer<Order>,
@@ -50,19 +45,15 @@ pub struct UdpLine {
     sample: Sample,
     counts: Arc<Counts>,
     refused: Consumer<Refused>,
-    /// The last refused datagram.
-    last: Option<Refused>,
+    last: Option<Refused>, // the last refused datagram
     stop: Arc<AtomicBool>,
     address: SocketAddr,
     thread: Option<JoinHandle<()>>,
 }
 
 impl UdpLine {
-    /// Listens at `address`. With `peer`, only datagrams from that address are accepted. The thread calls `prepare`
-    /// before its first datagram, for example to request real-time scheduling.
-    ///
-    /// # Errors
-    /// [`UdpError`] if the socket cannot be opened.
+    /// Listens at `address`; with `peer`, only to that address. The thread first calls `prepare`, for example for
+    /// real-time requests.
     pub fn open(
         address: SocketAddr,
         peer: Option<IpAddr>,
@@ -107,7 +98,6 @@ impl UdpLine {
         Ok(Self { origin, orders, reports, sample, counts, refused, last: None, stop, address, thread })
     }
 
-    /// The address on which the line listens.
     #[must_use]
     pub const fn address(&self) -> SocketAddr {
         self.address
@@ -147,7 +137,6 @@ impl Drop for UdpLine {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has already reported it.
             let _ = thread.join();
         }
     }
@@ -164,13 +153,11 @@ struct Worker {
     orders: Consumer<Order>,
     reports: Producer<Report>,
     allowed: Option<IpAddr>,
-    /// Address of the robot: the sender of the first valid message.
-    robot: Option<SocketAddr>,
+    robot: Option<SocketAddr>, // address of the robot: the sender of the first valid message
     counts: Arc<Counts>,
     refused: Producer<Refused>,
     heard: Option<u64>,
-    /// The loss of the robot has been reported.
-    lost: bool,
+    lost: bool, // the loss of the robot has been reported
 }
 
 impl Worker {
@@ -179,7 +166,6 @@ impl Worker {
         let received = self.socket.recv_from(&mut datagram);
         let now = nanoseconds(self.origin);
         while let Ok(order) = self.orders.pop() {
-            // The samples show whether the host refused the order.
             let _ = order.carry_out(&mut self.host);
         }
         match received {
@@ -209,14 +195,12 @@ impl Worker {
             Err(error) => return self.refuse(sender, Cause::Message(error)),
         };
         self.robot = Some(sender);
-        // An answer that cannot be sent is treated as a lost datagram.
         let _ = self.socket.send_to(answer, sender);
         let answered = nanoseconds(self.origin).saturating_sub(now);
         let cycle = self.heard.replace(now).map(|before| now.saturating_sub(before));
         // If the ring is full, the newest report is dropped; the next tick brings newer ones.
         let _ = self.reports.push(Report { sample: self.host.sample(), cycle, answered });
     }
-    /// Why datagrams of a sender are refused.
     fn stranger(&self, sender: SocketAddr) -> Option<Cause> {
         if self.allowed.is_some_and(|allowed| allowed != sender.ip()) {
             return Some(Cause::NotAllowed);

@@ -1,8 +1,5 @@
-//! The newest value from one thread to another: a sequence lock of atomics. Neither thread waits for the other, and no
-//! end allocates.
-//!
-//! The writer makes the sequence odd, writes the words, and makes it even. A reader that finds an odd sequence, or
-//! another one after its copy, tries again, a few times; then it keeps the value that it has.
+//! The newest value from one thread to another: a sequence lock of atomics. Neither thread waits or allocates. A reader
+//! that finds an odd sequence, or another one after its copy, tries again a few times, then keeps its value.
 
 use std::{
     marker::PhantomData,
@@ -32,7 +29,6 @@ pub struct Writer<T> {
     holds: PhantomData<T>,
 }
 
-/// The reader's end, with the value that it read last.
 pub struct Reader<T> {
     shared: Arc<Shared>,
     image: Box<[u8]>,
@@ -87,7 +83,6 @@ impl<T: Plain> Reader<T> {
         &self.value
     }
 
-    /// The value that was read last.
     #[must_use]
     pub const fn last(&self) -> &T {
         &self.value

@@ -1,6 +1,5 @@
-//! The connection to a coupler over TCP. Every close is a reset (`SO_LINGER` 0): requests that have not left this
-//! machine are discarded. With an ordinary close, the system would deliver old outputs after a short interruption of
-//! the network. See also [`neighbour`](super::neighbour).
+//! The connection to a coupler over TCP. Every close is a reset (`SO_LINGER` 0), so that the system discards old
+//! outputs instead of delivering them late. See also [`neighbour`](super::neighbour).
 
 use std::{
     io::{ErrorKind, Read, Write},
@@ -27,8 +26,7 @@ pub struct TcpLink {
     timeout: Duration,
     client: Client,
     stream: Option<TcpStream>,
-    /// An earlier request whose answer is missing.
-    is_unanswered: bool,
+    is_unanswered: bool, // an earlier request whose answer is missing
     received: [u8; MOST_FRAME_BYTES],
     filled: usize,
 }
@@ -68,7 +66,6 @@ impl TcpLink {
         Ok(())
     }
 
-    /// Receives the next frame; `None` if it is not complete in time.
     fn receive(&mut self, until: Duration) -> Result<Option<usize>, Fault> {
         let stream = self.stream.as_mut().ok_or(Fault::Disconnected)?;
         loop {

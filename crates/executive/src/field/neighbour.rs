@@ -1,21 +1,14 @@
 //! Whether the system knows the hardware address of a coupler for good.
 //!
-//! A machine that loses its link discards the hardware addresses that it has learnt. It then keeps packets until it has
-//! learnt the address again, up to three seconds, also those of connections that were reset in the meantime: an old
-//! image arrives at the coupler when the link is back. With a permanent entry in the table of neighbours the packets
-//! are dropped.
+//! A machine that loses its link discards learnt hardware addresses and keeps packets for up to three seconds: an old
+//! image arrives at the coupler when the link is back. With a permanent entry the packets are dropped.
 
 use std::{fs, io, net::IpAddr};
 
-/// The table of neighbours of IPv4.
-const TABLE: &str = "/proc/net/arp";
-/// Flag of a permanent entry (`ATF_PERM`).
-const PERMANENT: u32 = 0x04;
+const TABLE: &str = "/proc/net/arp"; // the table of neighbours of IPv4
+const PERMANENT: u32 = 0x04; // flag of a permanent entry (`ATF_PERM`)
 
-/// True if the entry of `address` is permanent; `None` if there is no entry, as for the own machine or behind a router.
-///
-/// # Errors
-/// The error of the system, if its table cannot be read.
+/// True if the entry of `address` is permanent; `None` without an entry, as for the own machine or behind a router.
 pub fn is_permanent(address: IpAddr) -> io::Result<Option<bool>> {
     fs::read_to_string(TABLE).map(|table| entry(&table, address))
 }

@@ -1,7 +1,5 @@
-//! The announcement of a run: it has its name, and other programs find it, from its start to its end.
-//!
-//! A run publishes its buffers from the first tick on. Before that it may wait for hours, for a workstation controller
-//! or for boards. So it first takes the role [`RUN`], and writes a phrase about its state into its directory.
+//! The announcement of a run, so that other programs find it while it waits, perhaps for hours, before its first tick.
+//! It takes the role [`RUN`] and writes a phrase about its state into its directory.
 
 use std::{fs, path::PathBuf};
 
@@ -14,12 +12,9 @@ use super::{
     runs,
 };
 
-/// The role of the program that has announced a run.
-const RUN: &str = "run";
-/// File of the phrase, in the directory of a run.
-const PHASE: &str = "phase";
-/// Longest phrase that is read, bytes.
-const LONGEST: u64 = 1024;
+const RUN: &str = "run"; // the role of the program that has announced a run
+const PHASE: &str = "phase"; // file of the phrase, in the directory of a run
+const LONGEST: u64 = 1024; // longest phrase that is read, bytes
 /// Names that are tried for a run without a given name. A program with several runs of a job needs more than one.
 const NAMES: u32 = 100;
 
@@ -30,10 +25,7 @@ pub struct Announced {
 }
 
 impl Announced {
-    /// Announce a run of this name.
-    ///
-    /// # Errors
-    /// [`SharedMemoryError::NameInUse`] if a living run has the name, otherwise the error of the directory of runs.
+    /// Announce a run of this name. Fails with [`SharedMemoryError::NameInUse`] if a living run has the name.
     pub fn named(name: RunName) -> Result<Self, SharedMemoryError> {
         let _lock = lock()?;
         have_salt()?;
@@ -42,7 +34,6 @@ impl Announced {
             let phase = phase(&name).unwrap_or_else(|| "runs".to_owned());
             return Err(SharedMemoryError::NameInUse { run: name, phase });
         }
-        // A killed run of this name may have left its objects.
         runs::remove_remains(&name, &layout())?;
         let presence = Presence::enter(&prefix, RUN)?;
         own_directory(place)?;
@@ -51,10 +42,6 @@ impl Announced {
         Ok(announced)
     }
 
-    /// Announce a run of a job, with a name that no living run has.
-    ///
-    /// # Errors
-    /// As [`Self::named`].
     pub fn of_job(job: &str) -> Result<Self, SharedMemoryError> {
         let first = RunName::unique(job);
         let mut last = Self::named(first.clone());
@@ -72,8 +59,7 @@ impl Announced {
         &self.name
     }
 
-    /// Say what the run is doing now, as a phrase after its name. Other programs show it; a phrase that cannot be
-    /// written is lost.
+    /// Set the run's state, as a phrase after its name, for other programs.
     pub fn say(&self, phase: &str) {
         let path = path(&self.name);
         let new = path.with_extension("new");
@@ -93,7 +79,6 @@ fn path(name: &RunName) -> PathBuf {
     place(name, &layout()).join(PHASE)
 }
 
-/// What a run has said about its state last, as a phrase after its name.
 #[must_use]
 pub fn phase(name: &RunName) -> Option<String> {
     let path = path(name);
@@ -103,7 +88,7 @@ pub fn phase(name: &RunName) -> Option<String> {
     Some(phase.chars().filter(|c| !c.is_control()).collect())
 }
 
-/// What a living run says that has not published its buffers yet; `None` for any other run.
+/// State of a living run that has not published its buffers yet; `None` for any other run.
 #[must_use]
 pub fn starting(name: &RunName) -> Option<String> {
     let starts = runs::is_there(name, RUN) && !runs::is_there(name, PUBLISHER);

@@ -1,5 +1,3 @@
-//! The readers' side: reads the buffers of a run without disturbing it.
-
 use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{plain::DecodeError, tick::Tick};
 
@@ -13,7 +11,6 @@ const ATTEMPTS: usize = 1000;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReadError {
-    /// The bytes are not legal records.
     #[error("shared memory holds an invalid record: {0}")]
     Decode(#[from] DecodeError),
     /// The writer was in the middle of a tick at every attempt; the next call may succeed.
@@ -21,10 +18,8 @@ pub enum ReadError {
     Busy,
 }
 
-/// A reader that is attached to a run. Dropping it detaches.
 pub struct Attached {
     name: RunName,
-    // Dropped before the files are removed, if this is the last process to leave.
     ports: Option<Ports>,
 }
 
@@ -34,12 +29,8 @@ struct Ports {
 }
 
 impl Attached {
-    /// Attach to a run by its name.
-    ///
-    /// # Errors
-    /// [`SharedMemoryError::NoSuchRun`] if no living run has the name, [`SharedMemoryError::OtherLayout`] if its
-    /// program has another layout, [`SharedMemoryError::Starting`] before its first tick, otherwise the error of
-    /// iceoryx2.
+    /// Attach to a run by its name. Fails if no living run has it, its program has another layout, or it is before its
+    /// first tick.
     pub fn open(name: &RunName) -> Result<Self, SharedMemoryError> {
         runs::find_living(name)?;
         if let Some(phase) = starting(name) {
@@ -55,16 +46,11 @@ impl Attached {
         &self.name
     }
 
-    /// Common memory after one tick: all processes have its stamp, except those of a pedestal in another system that
-    /// does not answer, which have an older one.
-    ///
-    /// # Errors
-    /// [`ReadError`].
+    /// Common memory after one tick. Processes of a pedestal in another system can have an older stamp.
     pub fn memory(&self) -> Result<CommonMemory, ReadError> {
         let Some(Ports { readers, .. }) = &self.ports else { return Err(ReadError::Busy) };
         for _ in 0..ATTEMPTS {
-            // The slot written last is read first, and the one written first is read last: if both are of one tick,
-            // all others are too.
+            // The first and the last written slot are of one tick, so all others are too.
             let (tick, _) = readers.executive.read()?;
             let memory = readers.processes()?;
             if readers.outside.read()?.0 == tick {
@@ -75,40 +61,25 @@ impl Attached {
         Err(ReadError::Busy)
     }
 
-    /// The external inputs of the last tick.
-    ///
-    /// # Errors
-    /// [`ReadError`].
     pub fn external(&self) -> Result<ExternalInputs, ReadError> {
         let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
         Ok(ports.readers.outside.read()?.1)
     }
 
-    /// The executive's counts of the run.
-    ///
-    /// # Errors
-    /// [`ReadError`].
     pub fn pulse(&self) -> Result<Pulse, ReadError> {
         let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
         Ok(ports.readers.executive.read()?.1)
     }
 
-    /// The headers of the ticks after `after`, the oldest first: at most those of the last ten seconds.
-    /// [`Tick::BEFORE_START`] returns all of them.
-    ///
-    /// # Errors
-    /// [`ReadError`].
+    /// The headers of the ticks after `after`, the oldest first, of the last ten seconds.
     pub fn history(&self, after: Tick) -> Result<Vec<Headers>, ReadError> {
         let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
         let (last, _) = ports.readers.executive.read()?;
         Ok(ports.readers.history.read(after, last)?)
     }
 
-    /// The view of the simulated cell; `None` before its first tick, or if the run has no simulated cell. It is
-    /// published after the tick whose number it has, so it may be a tick behind [`Self::memory`].
-    ///
-    /// # Errors
-    /// [`ReadError`].
+    /// The view of the simulated cell, if there is one. It is published after its tick, so it may be a tick behind
+    /// [`Self::memory`].
     pub fn cell(&self) -> Result<Option<CellView>, ReadError> {
         let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
         let (_, view) = ports.readers.cell.read()?;

@@ -1,8 +1,7 @@
 //! The buffers in shared memory, service by service.
 //!
 //! Each process has a service with one slot ([`super::slot`]), its output buffers. Further services have the external
-//! inputs, the executive's counts, the view of the simulated cell, and the headers of the last ten seconds
-//! ([`super::history`]).
+//! inputs, the counts, the view of the cell, and the headers of the last ten seconds ([`super::history`]).
 
 use iceoryx2::{node::Node, prelude::ipc};
 use interfaces::{CommonMemory, ExternalInputs, for_each_process};
@@ -17,10 +16,8 @@ use super::{
     slot::{self, NewService, ServiceReader, SlotReader, SlotWriter},
 };
 
-/// Key of the only slot of a service.
-const ONLY: u32 = 0;
+const ONLY: u32 = 0; // key of the only slot of a service
 
-/// Create a service of one slot.
 fn create<const N: usize, T: Plain>(
     node: &Node<ipc::Service>,
     service: &'static str,
@@ -30,7 +27,6 @@ fn create<const N: usize, T: Plain>(
     new.slot::<N, T>(ONLY, Tick::BEFORE_START, &T::ZERO).create()?.slot(ONLY)
 }
 
-/// Open a service of one slot.
 fn open<const N: usize, T>(
     node: &Node<ipc::Service>,
     service: &'static str,
@@ -50,22 +46,15 @@ macro_rules! services {
             reads: $reads:expr;
         }
     )+) => {
-        /// The writer's ends of all services.
         pub struct Writers {
             $( $field: SlotWriter<{ slot::size::<$outputs>() }, $outputs>, )+
             outside: SlotWriter<{ slot::size::<ExternalInputs>() }, ExternalInputs>,
-            /// The executive's counts.
             pub(super) executive: SlotWriter<{ slot::size::<Pulse>() }, Pulse>,
-            /// The view of the simulated cell.
             pub(super) cell: SlotWriter<{ slot::size::<CellView>() }, CellView>,
             history: HistoryWriter,
         }
 
         impl Writers {
-            /// Create all services.
-            ///
-            /// # Errors
-            /// Errors of iceoryx2.
             pub(super) fn create(node: &Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
                 Ok(Self {
                     $( $field: create(node, stringify!($field), epoch)?, )+
@@ -76,8 +65,8 @@ macro_rules! services {
                 })
             }
 
-            /// Write a tick in this order: external inputs, outputs of the processes, their headers in the history, and
-            /// the pulse. Does not allocate.
+            /// Write a tick: external inputs, outputs of the processes, their headers, then the pulse. Does not
+            /// allocate.
             pub fn write(&mut self, inputs: &ExternalInputs, memory: &CommonMemory, pulse: &Pulse) {
                 let tick = pulse.tick;
                 self.outside.write(tick, inputs);
@@ -87,23 +76,15 @@ macro_rules! services {
             }
         }
 
-        /// A reader's ends of all services.
         pub struct Readers {
             $( $field: SlotReader<{ slot::size::<$outputs>() }, $outputs>, )+
             pub(super) outside: SlotReader<{ slot::size::<ExternalInputs>() }, ExternalInputs>,
-            /// The executive's counts.
             pub(super) executive: SlotReader<{ slot::size::<Pulse>() }, Pulse>,
-            /// The view of the simulated cell.
             pub(super) cell: SlotReader<{ slot::size::<CellView>() }, CellView>,
-            /// The headers of the last ten seconds.
             pub(super) history: HistoryReader,
         }
 
         impl Readers {
-            /// Open all services.
-            ///
-            /// # Errors
-            /// Errors of iceoryx2.
             pub(super) fn open(node: &Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
                 Ok(Self {
                     $( $field: open(node, stringify!($field), epoch)?, )+
@@ -115,9 +96,6 @@ macro_rules! services {
             }
 
             /// The outputs of all processes. Each is complete, but they may be of different ticks.
-            ///
-            /// # Errors
-            /// If bytes are not a valid record.
             pub fn processes(&self) -> Result<CommonMemory, DecodeError> {
                 Ok(CommonMemory { $( $field: self.$field.read()?.1, )+ })
             }

@@ -1,8 +1,7 @@
 //! The headers of the last ten seconds, in a separate service.
 //!
-//! A reader that reads every 80 ms sees at best every second tick, and one that has just attached sees no earlier tick.
-//! So the run keeps the headers of all processes for [`HISTORY_TICKS`] ticks in a ring with one slot per tick. A tick
-//! writes one slot of about a kilobyte; a reader takes all of them, or those since its last read.
+//! For readers that see only some ticks, the run keeps the headers of all processes for [`HISTORY_TICKS`] ticks in a
+//! ring with one slot per tick, of about a kilobyte.
 
 use iceoryx2::{node::Node, prelude::ipc};
 use interfaces::{CommonMemory, Header, PROCESS_COUNT, ProcessId};
@@ -17,12 +16,10 @@ use super::{
 
 /// Number of ticks whose headers are kept: 10 s.
 pub const HISTORY_TICKS: u32 = 250;
-/// The headers of all processes after a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Headers {
     pub tick: Tick,
-    /// The headers of all processes, in the order of [`ProcessId`].
-    pub headers: [Header; PROCESS_COUNT],
+    pub headers: [Header; PROCESS_COUNT], // in the order of [`ProcessId`]
 }
 
 impl Headers {
@@ -32,9 +29,7 @@ impl Headers {
     }
 }
 
-/// Index of a tick's slot.
 fn place(tick: Tick) -> usize {
-    // The index is less than 250.
     usize::try_from(tick.0 % u64::from(HISTORY_TICKS)).unwrap_or_default()
 }
 
@@ -43,7 +38,6 @@ const SIZE: usize = slot::size::<AllHeaders>();
 pub(super) struct HistoryWriter(Vec<SlotWriter<SIZE, AllHeaders>>);
 
 impl HistoryWriter {
-    /// Create the service, with slots that belong to no tick.
     pub(super) fn create(node: &Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
         let new = NewService::new(node, HISTORY, epoch, runs::MAX_READERS)?;
         let new =
@@ -71,8 +65,7 @@ impl HistoryReader {
         (0..HISTORY_TICKS).map(|key| service.slot(key)).collect::<Result<_, _>>().map(Self)
     }
 
-    /// The headers of the ticks after `after` up to `last`, the oldest first. Ticks that were overwritten in the
-    /// meantime are left out.
+    /// The headers of the ticks after `after` up to `last`, the oldest first, without overwritten ones.
     pub(super) fn read(&self, after: Tick, last: Tick) -> Result<Vec<Headers>, DecodeError> {
         let first = after.next().0.max(last.next().0.saturating_sub(u64::from(HISTORY_TICKS)));
         let mut found = Vec::new();

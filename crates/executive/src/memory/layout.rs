@@ -1,5 +1,4 @@
-//! The layout of a run's services: their names, the records that the executive adds to those of the processes, and
-//! their common version.
+//! The layout of a run's services: their names, the executive's own records, and their common version.
 
 use std::sync::LazyLock;
 
@@ -8,8 +7,8 @@ use rcs_core::{Plain, digest::Digest, plain::FieldSchema, reflect, tick::Tick};
 
 use super::cell::{CELL, CellView};
 
-/// Epoch of a service: 1 for the first writer, the next number for a writer that replaces a killed one, because a
-/// blackboard cannot be reopened for writing while a reader holds it. It is part of the service's name.
+/// Epoch of a service, part of its name: the next number for a writer that replaces a killed one, because a blackboard
+/// cannot be reopened for writing while a reader holds it.
 pub type Epoch = u32;
 
 /// The executive's counts of a run, written once a tick. They depend on the machine and are not part of the digest.
@@ -60,8 +59,7 @@ macro_rules! services {
 }
 for_each_process!(services);
 
-/// Version of the layout: a hash of the names and schemas of all services. Programs with different layouts never read
-/// each other's bytes.
+/// A hash of the names and schemas of all services. Programs with different layouts never read each other's bytes.
 #[must_use]
 pub fn layout_version() -> u32 {
     static VERSION: LazyLock<u32> = LazyLock::new(|| {

@@ -1,8 +1,7 @@
 //! Time limits for the set-up and opening of iceoryx2 services.
 //!
-//! iceoryx2 follows indices and flags in shared memory. If another program damages these during the set-up of a run,
-//! iceoryx2 0.10.0 can panic, which becomes an error here, or wait forever for a flag. Such a call cannot be cancelled:
-//! only the whole process can be ended.
+//! If another program damages the shared memory during the set-up, iceoryx2 0.10.0 can panic, which becomes an error
+//! here, or wait forever for a flag. Such a call cannot be cancelled: only the process can be ended.
 
 use std::{
     panic::{self, AssertUnwindSafe},
@@ -13,19 +12,13 @@ use std::{
 
 use super::{error::SharedMemoryError, place::root};
 
-/// Longest time for setting up or opening shared memory: it usually takes some milliseconds, on a busy machine up to a
-/// second.
+/// Longest time for setting up or opening shared memory, which can take a second on a busy machine.
 pub const SET_UP_LIMIT: Duration = Duration::from_secs(20);
 
-/// Called with the limit, on a separate thread, when the limit has passed. It should end the process, because the other
-/// call does not return.
+/// Called with the limit, on another thread. It should end the process: the other call does not return.
 pub type OnStuck = fn(Duration);
 
-/// Run `work`. If it takes longer than `limit`, `on_stuck` is called; without it there is no limit.
-///
-/// # Errors
-/// Errors of `work`, [`SharedMemoryError::Damaged`] if it panics, and [`SharedMemoryError::Io`] if the thread that
-/// watches it cannot be started.
+/// Run `work`; after `limit`, if any, `on_stuck` is called. A panic becomes [`SharedMemoryError::Damaged`].
 pub fn within_limit<T, E: From<SharedMemoryError>>(
     limit: Duration,
     on_stuck: Option<OnStuck>,

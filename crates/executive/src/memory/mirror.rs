@@ -1,9 +1,8 @@
 //! The status of a run for programs that do not know its buffers: mirrored by publish-subscribe.
 //!
-//! `iox2`, the tool of iceoryx2 (`cargo install iceoryx2-cli`), lists nodes and services of a run, but shows no values
-//! of blackboards. So a separate thread summarises the last published buffers ten times a second ([`Status`]) and
-//! publishes the summary as one JSON object on the service [`SERVICE`]. `iox2` finds a run by the configuration file
-//! that the mirror writes into the run's directory:
+//! `iox2`, the tool of iceoryx2 (`cargo install iceoryx2-cli`), shows no values of blackboards. So a thread publishes a
+//! [`Status`] as one JSON object on the service [`SERVICE`], ten times per second. `iox2` finds a run by a
+//! configuration file in the run's directory:
 //!
 //! ```sh
 //! cd "$(rcs-run status --directory)"
@@ -12,10 +11,9 @@
 //! iox2 service subscribe rcs-ii/status
 //! ```
 //!
-//! The mirror is optional, and it runs inside the program that moves a robot, so it must not cause that program to
-//! fail. It reads a copy of the buffers in this program's own memory, where no other process can write. Its shared
-//! memory is allocated at the start and never grows. It publishes nothing while there is too little shared memory to
-//! serve a new subscriber.
+//! The mirror runs inside the program that moves a robot, so it must not cause that program to fail. It reads a copy of
+//! the buffers that no other process can write. Its shared memory never grows; it publishes nothing while there is too
+//! little for a new subscriber.
 
 use std::{
     fs,
@@ -50,12 +48,9 @@ const PERIOD: Duration = Duration::from_millis(100);
 const LOOK: Duration = Duration::from_millis(10);
 /// Longest wait for the thread at the start and the end of a run.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// Greatest size of a message, bytes: about five times the usual size.
-const MESSAGE: usize = 16 * 1024;
-/// Greatest number of monitors at a time.
-const MAX_SUBSCRIBERS: usize = 8;
+const MESSAGE: usize = 16 * 1024; // greatest size of a message, bytes: about five times the usual size
+const MAX_SUBSCRIBERS: usize = 8; // greatest number of monitors at a time
 
-/// The mirror thread. Dropping this ends the thread.
 pub struct Mirror {
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -65,23 +60,18 @@ struct Ports {
     run: RunName,
     window: Arc<Window>,
     publisher: Publisher<ipc::Service, [u8], ()>,
-    // After the publisher: the service must be closed before its node.
     _member: runs::RunNode,
 }
 
 impl Mirror {
     /// Start to mirror a run of this program. The thread inherits the priority of its creator: start it before the
-    /// real-time requests.
-    ///
-    /// # Errors
-    /// [`SharedMemoryError`] with the error of iceoryx2 or of the operating system.
+    /// real-time requests. Fails with [`SharedMemoryError`] with the error of iceoryx2 or of the operating system.
     pub fn start(run: &publish::Publisher) -> Result<Self, SharedMemoryError> {
         let name = run.name();
         write_configuration(name)?;
         let stop = Arc::new(AtomicBool::new(false));
         let (seen, (say, opened)) = (Arc::clone(&stop), mpsc::channel());
         let (run, window) = (name.clone(), run.window());
-        // The ports belong to the thread that opens them.
         let work = move || match Ports::open(run, window) {
             Ok(ports) => {
                 let _ = say.send(Ok(()));
@@ -169,7 +159,6 @@ impl Drop for Mirror {
             thread::sleep(Duration::from_millis(1));
         }
         if thread.is_finished() {
-            // The thread itself has reported its panic, which does not affect the run.
             let _ = thread.join();
         }
     }

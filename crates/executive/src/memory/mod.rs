@@ -1,23 +1,8 @@
 //! Common memory for other programs (docs/design/memory.md "Shared memory"): the buffers of a run in shared memory.
 //!
-//! The run publishes the outputs of its processes once a tick. Other programs attach and leave at any time and read the
-//! latest values; they cannot affect a tick. Each writer (a control process, the HWSC, the devices, the executive) has
-//! one iceoryx2 *blackboard* service: latest value, one writer, no allocation.
-//!
-//! A value is bytes, never a Rust structure: the tick that wrote it, then the byte image ([`rcs_core::plain`]). So there
-//! is no padding, no pointer and no enum that another program could make illegal; a reader decodes with checks.
-//!
-//! * `slot`: one value in shared memory, also for the boards;
-//! * [`mod@layout`]: the list of services, [`buffers`]: writing and reading them;
-//! * [`Announced`]: a run before its first tick;
-//! * [`publish`]: the writer's side, for the run;
-//! * [`attach`]: the readers' side;
-//! * [`history`]: the headers of the last ten seconds, [`cell`]: the view of the simulated cell;
-//! * [`mirror`]: the status for programs that do not know the buffers;
-//! * [`name`], [`place`]: names, directories and prefixes, and the check that only this user can use them;
-//! * [`presence`]: which programs of a run are alive;
-//! * [`runs`]: entering, finding and removing runs;
-//! * [`limit`]: time limit of the set-up.
+//! Other programs attach and leave at any time; they cannot affect a tick. Each writer has one iceoryx2 *blackboard*
+//! service: latest value, one writer, no allocation. A value is the tick that wrote it, then the byte image
+//! ([`rcs_core::plain`]), which a reader decodes with checks.
 
 mod announced;
 pub mod attach;

@@ -2,11 +2,9 @@
 
 use std::{fmt, fs, str::FromStr};
 
-/// Greatest length of a run's name, characters. The path of an event's socket contains it, and Linux limits such a path
-/// to 107 bytes.
+/// Characters. The path of an event's socket contains the name, and Linux limits such a path to 107 bytes.
 pub const RUN_NAME_MAX: usize = 28;
 
-/// A text that is not a valid name of a run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "a run's name has 1 to {RUN_NAME_MAX} letters, digits, dots, hyphens or underscores, {0:?} is not one"
@@ -18,8 +16,7 @@ pub struct NameError(pub String);
 pub struct RunName(String);
 
 impl RunName {
-    /// A name that no other process of this machine gives: the job, this process id, and in a container the number of
-    /// its PID namespace. Characters of the job that are not valid in a name become hyphens.
+    /// The job, this process id, and in a container the number of its PID namespace. Invalid characters become hyphens.
     #[must_use]
     pub fn unique(job: &str) -> Self {
         let namespace = namespace().map_or_else(String::new, |number| format!(".{number}"));
@@ -34,7 +31,6 @@ impl RunName {
         Self::with_end(job, &format!("-{end}.{number}"))
     }
 
-    /// As much of the job as there is room for, and the end.
     fn with_end(job: &str, end: &str) -> Self {
         let room = RUN_NAME_MAX.saturating_sub(end.len());
         Self(job.chars().take(room).collect::<String>() + end)

@@ -4,7 +4,6 @@ use std::{fs, path::PathBuf};
 
 use rustix::process::geteuid;
 
-/// The directory in which Linux keeps shared memory objects.
 pub(super) const SHARED_MEMORY: &str = "/dev/shm";
 /// Name of the directory of runs, before the number of the user.
 pub(super) const ROOT: &str = "rcs-runs-";

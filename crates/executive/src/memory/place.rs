@@ -1,15 +1,9 @@
-//! Paths of a run: the directory of all runs by name, the prefix for the names of objects in shared memory, the
-//! directory for the files of iceoryx2 among them, and the checks that only this user can access them.
+//! Paths of a run, and the checks that only this user can access them.
 //!
-//! The directory of runs is in shared memory, beside the objects of the runs. A directory for temporary files does not
-//! serve: it is cleaned while a run lives, and a service has one of its own. `RCS_RUNS` names another directory, for
-//! tests.
-//!
-//! The files of iceoryx2 are never under `RCS_RUNS`: some are sockets, whose paths have 107 bytes at most, and iceoryx2
-//! panics on paths of more than 255 bytes.
-//!
-//! The prefix is a hash of a random number in the directory of runs. So runs in different directories never collide,
-//! and another user cannot take a name before the run does.
+//! The directory of runs is in shared memory: one for temporary files is cleaned while a run lives, and a service has
+//! one of its own. `RCS_RUNS` names another directory, for tests; the files of iceoryx2 are never in it, because paths
+//! of sockets have at most 107 bytes. The prefix of a run's objects is a hash of a random number in the directory of
+//! runs: runs in different directories never collide, and another user cannot take a name first.
 
 use std::{
     fs::{self, DirBuilder, File, Metadata, OpenOptions, Permissions, TryLockError},
@@ -33,21 +27,15 @@ use super::{
     objects::{ROOT, SHARED_MEMORY, objects},
 };
 
-/// Number of bytes of shared memory that must be free before a run creates its objects, which take 1.9 MB with boards
-/// and less without.
+/// Bytes of shared memory that must be free before a run creates its objects, which take 1.9 MB with boards.
 const NEEDED: u64 = 3 * 1024 * 1024;
-/// Suffix of the prefix in the name of the directory of iceoryx2.
-const FILES: &str = "files";
+const FILES: &str = "files"; // suffix of the prefix in the name of the directory of iceoryx2
 /// Longest wait for a lock, which other programs hold for milliseconds.
 pub(super) const LOCK_LIMIT: Duration = Duration::from_secs(5);
-/// Time between two attempts to take a lock.
-const AGAIN: Duration = Duration::from_millis(1);
-/// Permission bits of other users.
-const OTHERS: u32 = 0o077;
+const AGAIN: Duration = Duration::from_millis(1); // time between two attempts to take a lock
+const OTHERS: u32 = 0o077; // permission bits of other users
 
-/// Variable of the environment with another directory for the directory of runs.
 const ELSEWHERE: &str = "RCS_RUNS";
-/// Directory of all runs of this user.
 #[must_use]
 pub fn root() -> PathBuf {
     let named = std::env::var_os(ELSEWHERE).filter(|named| !named.is_empty());
@@ -55,7 +43,6 @@ pub fn root() -> PathBuf {
     parent.join(format!("{ROOT}{}", geteuid().as_raw()))
 }
 
-/// The layout version of this program as used in names.
 #[must_use]
 pub fn layout() -> String {
     format!("{:08x}", layout_version())
@@ -65,20 +52,17 @@ pub(super) fn place(name: &RunName, layout: &str) -> PathBuf {
     root().join(format!("{name}@{layout}"))
 }
 
-/// Directory of the files that iceoryx2 creates for the run with this prefix.
 pub(super) fn files(prefix: &str) -> PathBuf {
     Path::new(SHARED_MEMORY).join(format!("{prefix}{FILES}"))
 }
 
-/// The socket through which operators reach a run: in a directory that only this user can access, and present while the
-/// run is published.
+/// The socket through which operators reach a run, in a directory that only this user can access.
 #[must_use]
 pub fn operator_socket(name: &RunName) -> PathBuf {
     files(&prefix(name, &layout())).join("operator")
 }
 
-/// The file of a load for boards in other processes: the generation and the name of the blocks in the first line, then
-/// the blocks. It is removed with the run.
+/// The file of a load for boards: the generation and the name of the blocks in the first line, then the blocks.
 #[must_use]
 pub fn load_file(name: &RunName, load: u32) -> PathBuf {
     files(&prefix(name, &layout())).join(format!("load-{load}"))
@@ -96,8 +80,7 @@ pub fn prefix(name: &RunName, layout: &str) -> String {
     format!("rcs-{:08x}_", (value ^ (value >> 32)) & u64::from(u32::MAX))
 }
 
-/// Take the lock for listing runs, and for creating or removing a run's directory. The system releases it when its
-/// holder ends, in any way.
+/// Take the lock for listing runs, and for creating or removing a run's directory.
 pub(super) fn lock() -> Result<File, SharedMemoryError> {
     own_root()?;
     let path = root().join("lock");
@@ -144,12 +127,10 @@ pub(super) fn have_salt() -> Result<(), SharedMemoryError> {
     Ok(())
 }
 
-/// Make sure that the directory of runs exists and only this user can access it.
 fn own_root() -> Result<(), SharedMemoryError> {
     own_directory(root())
 }
 
-/// Make sure that a directory exists and only this user can access it.
 pub(super) fn own_directory(path: PathBuf) -> Result<(), SharedMemoryError> {
     let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
     match DirBuilder::new().mode(0o700).create(&path) {
@@ -207,8 +188,8 @@ pub(super) fn own_objects(prefix: &str) -> Result<(), SharedMemoryError> {
     Ok(())
 }
 
-/// Name after the prefix, and first bytes, of the object that iceoryx2 0.10.0 keeps for all nodes of a run: its version
-/// and a counter.
+/// The object that iceoryx2 0.10.0 keeps for all nodes of a run: name after the prefix, and first bytes (version,
+/// counter).
 const NODES: (&str, [u8; 16]) = (
     "9204dd183d1c4d8e1ff592a30766ffa6765aa8b5_node.0_10_0.global_mgmt",
     [0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
@@ -225,8 +206,7 @@ pub(super) fn have_nodes(prefix: &str) -> Result<(), SharedMemoryError> {
     }
 }
 
-/// Check that there is enough shared memory for a run. If the system has no page for an object at its first access, the
-/// program ends with a bus error, so this is checked before.
+/// Check that there is enough shared memory: a page that is missing at its first access ends the program.
 pub(crate) fn have_room() -> Result<(), SharedMemoryError> {
     let Ok(found) = statvfs(SHARED_MEMORY) else { return Ok(()) };
     let free = found.f_bavail.saturating_mul(found.f_frsize);

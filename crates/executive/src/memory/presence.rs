@@ -1,8 +1,5 @@
-//! Detects which programs use a run: each role has a lock, which the system releases when the program ends, for any
-//! reason.
-//!
-//! The lock is on a file next to the run's objects in shared memory. So it shows whether a run is alive without opening
-//! the remains of a killed or damaged run.
+//! Detects which programs use a run: each role has a lock on a file next to the run's objects. The system releases it
+//! when the program ends, for any reason. Remains of a killed run need not be opened.
 
 use std::{
     fs::{self, File, TryLockError},
@@ -21,8 +18,7 @@ use super::{
     place::{LOCK_LIMIT, own_file},
 };
 
-/// Text after the prefix in the name of a lock file; the role comes last.
-const MARK: &str = "alive.";
+const MARK: &str = "alive."; // text after the prefix in the name of a lock file; the role comes last
 /// Another program that tests whether the role is held keeps the lock for less than this.
 const ASKING: Duration = Duration::from_millis(2);
 /// Number of times a held lock is tested, to distinguish a holder from a program that tests.
@@ -65,12 +61,10 @@ fn is_at(file: &File, path: &Path) -> io::Result<bool> {
     }
 }
 
-/// True if a living program has the role in the run with this prefix.
 pub(super) fn is_held(prefix: &str, role: &str) -> bool {
     locked(&path(prefix, role))
 }
 
-/// True if a living program has any role in the run with this prefix.
 pub(super) fn is_alive(prefix: &str) -> bool {
     objects(&format!("{prefix}{MARK}")).any(|path| locked(&path))
 }

@@ -1,5 +1,4 @@
-//! The writer's side, for the run: creates all services before the first tick and writes them once a tick, without
-//! allocating.
+//! The writer's side: creates all services before the first tick and writes them once per tick, without allocating.
 
 use std::sync::{Arc, Mutex, TryLockError};
 
@@ -14,13 +13,11 @@ use super::{
     place, runs,
 };
 
-/// The role of the program that publishes a run.
 pub(crate) const PUBLISHER: &str = "rcs-run";
 
 /// Epoch of a run whose writers were never restarted.
 pub const FIRST_EPOCH: Epoch = 1;
 
-/// The data published last.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Published {
     pub external: ExternalInputs,
@@ -28,8 +25,7 @@ pub(super) struct Published {
     pub pulse: Pulse,
 }
 
-/// The data published last, for other threads of this program: no other process can change them. Neither side waits for
-/// the other, so that a reading thread never delays a tick.
+/// The data published last, for other threads of this program. A reading thread never delays a tick.
 #[derive(Default)]
 pub(super) struct Window(Mutex<Published>);
 
@@ -45,11 +41,10 @@ impl Window {
     }
 }
 
-/// The writers of all buffers of a run. Dropping this ends the run in shared memory: readers that are still attached
-/// see [`Pulse::over`], and the last process to leave removes the files.
+/// Dropping this ends the run in shared memory: attached readers see [`Pulse::over`], and the last process to leave
+/// removes the files.
 pub struct Publisher {
     name: RunName,
-    // Dropped before the files are removed: iceoryx2 must have released them by then.
     ports: Option<Ports>,
     pulse: Pulse,
     window: Arc<Window>,
@@ -57,15 +52,11 @@ pub struct Publisher {
 
 struct Ports {
     writers: Writers,
-    // Last: the services must be closed before their node.
     _member: runs::RunNode,
 }
 
 impl Publisher {
-    /// Set up all services of a run. It first removes the remains of killed runs.
-    ///
-    /// # Errors
-    /// [`SharedMemoryError`] with the error of iceoryx2, or if there is not enough shared memory or the name is taken.
+    /// Set up all services of a run, after removing the remains of killed runs.
     pub fn create(name: &RunName) -> Result<Self, SharedMemoryError> {
         // If a step of the set-up fails, remove the objects of the earlier steps.
         Self::set_up(name).inspect_err(|_| {
@@ -86,7 +77,6 @@ impl Publisher {
         Arc::clone(&self.window)
     }
 
-    /// The name by which readers find the run.
     #[must_use]
     pub const fn name(&self) -> &RunName {
         &self.name
@@ -127,7 +117,6 @@ impl Drop for Publisher {
             ports.writers.executive.write(self.pulse.tick, &Pulse { over: true, ..self.pulse });
             drop(ports);
         }
-        // A failure cannot be handled here; `rcs-run clean` tries again and reports it.
         let _ = runs::remove_if_deserted(&self.name, &place::layout());
     }
 }

@@ -1,8 +1,7 @@
 //! Entering, finding and removing runs.
 //!
-//! Every run has a name, its own directory, and its own prefix of names in shared memory ([`super::place`]). A run is
-//! alive as long as a program holds a role in it ([`super::presence`]). Other runs are removed by name, without opening
-//! their objects.
+//! A run has a name, a directory, and a prefix in shared memory ([`super::place`]). It is alive while a program holds a
+//! role in it ([`super::presence`]). Dead runs are removed by name, without opening their objects.
 
 use std::{
     fs, io,
@@ -30,17 +29,14 @@ use super::{
 /// Greatest number of readers of a run at a time: consoles, monitors, recorders.
 pub(super) const MAX_READERS: usize = 16;
 
-/// A run found in shared memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Found {
     pub name: RunName,
-    /// Layout version of the program that runs it.
     pub layout: String,
     /// True if a living program uses it: the run itself, or a reader that has not left yet.
     pub alive: bool,
 }
 
-/// Results of [`clean`].
 #[derive(Debug, Default)]
 pub struct Cleaned {
     pub removed: Vec<RunName>,
@@ -52,7 +48,6 @@ pub struct Cleaned {
 /// A program's access to a run: a node of iceoryx2, and the role that shows others that the program is alive.
 pub(crate) struct RunNode {
     node: Node<ipc::Service>,
-    // After the node: the run is alive as long as iceoryx2 uses it.
     _presence: Presence,
 }
 
@@ -82,7 +77,6 @@ pub(super) fn config(name: &RunName) -> Result<Config, SharedMemoryError> {
     Ok(config)
 }
 
-/// Enter a run of this layout.
 pub(crate) fn enter(name: &RunName, role: &str) -> Result<RunNode, SharedMemoryError> {
     // Suppress warnings of iceoryx2 on standard error: this program has its own messages for them.
     set_log_level(LogLevel::Fatal);
@@ -116,11 +110,7 @@ pub(crate) fn service_name(service: &'static str, epoch: Epoch) -> Result<Servic
         .map_err(|error| SharedMemoryError::service(service, &error))
 }
 
-/// All runs of this user with remains in shared memory, alive or not, in the order of their names.
-///
-/// # Errors
-/// [`SharedMemoryError::Io`] if the directory of runs cannot be read, [`SharedMemoryError::NotOurs`] if it belongs to
-/// another user.
+/// All runs of this user with remains in shared memory, alive or not, by name.
 pub fn list() -> Result<Vec<Found>, SharedMemoryError> {
     let root = root();
     if matches!(fs::symlink_metadata(&root), Err(error) if error.kind() == io::ErrorKind::NotFound) {
@@ -159,15 +149,11 @@ pub(crate) fn find_living(name: &RunName) -> Result<(), SharedMemoryError> {
     }
 }
 
-/// True if a living program has the role in a run.
 pub(crate) fn has_living(name: &RunName, role: &str) -> bool {
     presence::is_held(&prefix(name, &layout()), role)
 }
 
-/// Remove the remains of killed runs; living runs are not affected, even those in another directory.
-///
-/// # Errors
-/// [`SharedMemoryError::Io`] if the directory of runs cannot be read. Failed removals are in the result.
+/// Remove the remains of killed runs. Failed removals are in the result.
 pub fn clean() -> Result<Cleaned, SharedMemoryError> {
     let mut cleaned = Cleaned::default();
     for run in list()? {
@@ -180,10 +166,7 @@ pub fn clean() -> Result<Cleaned, SharedMemoryError> {
     Ok(cleaned)
 }
 
-/// Remove the objects of killed runs whose directory no longer exists or is elsewhere; returns the number of these runs.
-///
-/// # Errors
-/// [`SharedMemoryError::Io`] with the first object that could not be removed.
+/// Remove the objects of killed runs without a directory here; returns the number of these runs.
 pub fn clean_objects() -> Result<usize, SharedMemoryError> {
     let dead: Vec<String> =
         presence::prefixes().into_iter().filter(|prefix| !presence::is_alive(prefix)).collect();
@@ -218,7 +201,6 @@ fn remove(path: &path::Path) -> io::Result<()> {
     if is_directory { fs::remove_dir_all(path) } else { fs::remove_file(path) }
 }
 
-/// Remove the objects of a run.
 fn remove_objects(prefix: &str) -> Result<(), SharedMemoryError> {
     for path in objects(prefix) {
         match remove(&path) {

@@ -1,12 +1,9 @@
 //! A slot: one value in shared memory, with one writer and any number of readers.
 //!
-//! A slot is an entry of an iceoryx2 blackboard. Its bytes are the tick that wrote it (the *stamp*), then the byte image
-//! of the value ([`rcs_core::plain`]). The writer encodes in place, into the cell that no reader uses, and publishes
-//! the whole entry at once. A reader takes one copy, then checks it: what another program writes afterwards cannot make
-//! a checked value illegal (docs/design/memory.md "One copy"). While a slot is unchanged, a reader returns the value
-//! that it decoded last.
-//!
-//! Slots are grouped into services. The name of a service ends with its [`Epoch`].
+//! A slot is an entry of an iceoryx2 blackboard: the tick that wrote it (the *stamp*), then the byte image
+//! ([`rcs_core::plain`]). The writer encodes in place and publishes the whole entry at once. A reader takes one copy,
+//! then checks it: later writes cannot make it illegal (docs/design/memory.md "One copy"). The name of a service ends
+//! with its [`Epoch`].
 
 use std::{cell::RefCell, fmt::Debug, marker::PhantomData};
 
@@ -27,7 +24,6 @@ use rcs_core::{
 
 use super::{error::SharedMemoryError, layout::Epoch, runs};
 
-/// Stamp of a slot that was not written yet.
 pub(crate) const UNWRITTEN: Tick = Tick(u64::MAX);
 
 /// Size of a slot that holds a `T`, bytes.
@@ -35,7 +31,6 @@ pub(crate) const fn size<T: Plain>() -> usize {
     Tick::SIZE + T::SIZE
 }
 
-/// The bytes of a slot.
 fn encode<const N: usize, T: Plain>(stamp: Tick, value: &T, bytes: &mut [u8; N]) {
     let mut w = Writer::new(bytes);
     stamp.encode(&mut w);
@@ -43,7 +38,6 @@ fn encode<const N: usize, T: Plain>(stamp: Tick, value: &T, bytes: &mut [u8; N])
     debug_assert_eq!(w.missing(), 0);
 }
 
-/// A service that is being set up, for its writer.
 pub(crate) struct NewService {
     service: &'static str,
     creator: Creator<u32, ipc::Service>,
@@ -51,9 +45,6 @@ pub(crate) struct NewService {
 
 impl NewService {
     /// A service without slots for at most `readers` readers.
-    ///
-    /// # Errors
-    /// [`SharedMemoryError::Service`] if the name is not valid.
     pub fn new(
         node: &Node<ipc::Service>,
         service: &'static str,
@@ -76,10 +67,7 @@ impl NewService {
         self
     }
 
-    /// Create the service.
-    ///
-    /// # Errors
-    /// [`SharedMemoryError::Service`] with the error of iceoryx2, also if the service exists.
+    /// Create the service; an existing one is an error.
     pub fn create(self) -> Result<ServiceWriter, SharedMemoryError> {
         let Self { service, creator } = self;
         let failed = |what: &dyn Debug| SharedMemoryError::service(service, what);
@@ -89,7 +77,6 @@ impl NewService {
     }
 }
 
-/// The writer's end of a service.
 pub(crate) struct ServiceWriter {
     service: &'static str,
     port: WriterPort<ipc::Service, u32>,
@@ -97,9 +84,6 @@ pub(crate) struct ServiceWriter {
 
 impl ServiceWriter {
     /// The writer's end of a slot. It stays valid without the service's end.
-    ///
-    /// # Errors
-    /// [`SharedMemoryError::Service`] if the service has no such slot.
     pub fn slot<const N: usize, T>(&self, key: u32) -> Result<SlotWriter<N, T>, SharedMemoryError> {
         let entry = self.port.entry(&key);
         let entry = entry.map_err(|error| SharedMemoryError::service(self.service, &error))?;
@@ -107,10 +91,8 @@ impl ServiceWriter {
     }
 }
 
-/// The writer's end of a slot of `N` bytes that holds a `T`.
 pub(crate) struct SlotWriter<const N: usize, T> {
-    /// Absent only while a value is written.
-    entry: Option<EntryHandleMut<ipc::Service, u32, [u8; N]>>,
+    entry: Option<EntryHandleMut<ipc::Service, u32, [u8; N]>>, // absent only while a value is written
     holds: PhantomData<T>,
 }
 
@@ -126,17 +108,13 @@ impl<const N: usize, T: Plain> SlotWriter<N, T> {
     }
 }
 
-/// A reader's end of a service.
 pub(crate) struct ServiceReader {
     service: &'static str,
     port: Port<ipc::Service, u32>,
 }
 
 impl ServiceReader {
-    /// Open a service.
-    ///
-    /// # Errors
-    /// [`SharedMemoryError::Service`] with the error of iceoryx2; a service that does not exist may be created later.
+    /// Open a service; one that does not exist may be created later.
     pub fn open(
         node: &Node<ipc::Service>,
         service: &'static str,
@@ -150,9 +128,6 @@ impl ServiceReader {
     }
 
     /// A reader's end of a slot. It stays valid without the service's end.
-    ///
-    /// # Errors
-    /// [`SharedMemoryError::Service`] if the service has no such slot.
     pub fn slot<const N: usize, T>(&self, key: u32) -> Result<SlotReader<N, T>, SharedMemoryError> {
         let entry = self.port.entry(&key);
         let entry = entry.map_err(|error| SharedMemoryError::service(self.service, &error))?;
@@ -160,23 +135,18 @@ impl ServiceReader {
     }
 }
 
-/// A reader's end of a slot.
 pub(crate) struct SlotReader<const N: usize, T> {
     entry: EntryHandle<ipc::Service, u32, [u8; N]>,
     last: RefCell<Option<Decoded<N, T>>>,
 }
 
-/// The image that was read last, and its stamp and value.
 struct Decoded<const N: usize, T> {
     image: BlackboardValue<[u8; N]>,
     found: (Tick, T),
 }
 
 impl<const N: usize, T: Plain> SlotReader<N, T> {
-    /// The stamp and the value. Does not allocate.
-    ///
-    /// # Errors
-    /// If the bytes are not the image of a legal value.
+    /// The stamp and the value. Does not allocate. Fails if the bytes are not the image of a legal value.
     pub fn read(&self) -> Result<(Tick, T), DecodeError> {
         if let Some(last) = &*self.last.borrow()
             && self.entry.is_up_to_date(&last.image)
@@ -190,10 +160,7 @@ impl<const N: usize, T: Plain> SlotReader<N, T> {
         Ok(found)
     }
 
-    /// The value, if it was written in tick `stamp`. Does not allocate.
-    ///
-    /// # Errors
-    /// As [`Self::read`].
+    /// The value, if it was written in tick `stamp`. Does not allocate. Errors: as [`Self::read`].
     pub fn read_at(&self, stamp: Tick) -> Result<Option<T>, DecodeError> {
         let (written, value) = self.read()?;
         Ok((written == stamp).then_some(value))

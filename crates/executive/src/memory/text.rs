@@ -12,8 +12,7 @@ use rcs_core::{
 pub struct Text<const N: usize>([u8; N]);
 
 impl<const N: usize> Text<N> {
-    /// The first `N` characters of a text. A character that is not printable ASCII becomes `?`, a line break becomes a
-    /// blank.
+    /// The first `N` characters; one that is not printable ASCII becomes `?`, a line break a blank.
     #[must_use]
     pub fn clipped(text: &str) -> Self {
         let mut bytes = [0; N];
@@ -83,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn only_texts_become_texts_again() {
+    fn only_valid_bytes_decode_as_text() {
         let text = Text::<8>::clipped("MOVE 4");
         assert_eq!(from_bytes::<Text<8>>(&to_bytes::<8, _>(&text)), Ok(text));
         for bad in [*b"MOV\x01\0\0\0\0", *b"MOV\0E\0\0\0", [0xC3, 0xA9, 0, 0, 0, 0, 0, 0]] {

@@ -1,10 +1,8 @@
 //! A serial port for the controller: bytes are received and sent without waiting (docs/design/link.md "Serial port").
 //!
-//! [`SerialLine`] connects the T3 Interface, which knows only bytes, with the port. In a tick it makes a handful of
-//! system calls, never blocks and never allocates. The port may disappear at any time, by an unplugged adapter or a
-//! peer that closes the line: then the line is not ready and gives no bytes; this is not an error. A helper thread then
-//! closes the dead port (closing may wait for the hardware) and tries once a second to open it again; the tick only
-//! checks whether the thread has opened a new one.
+//! In a tick [`SerialLine`] makes a handful of system calls, never blocks and never allocates. The port may disappear
+//! at any time: then the line is not ready and gives no bytes; this is not an error. A helper thread closes the dead
+//! port (closing may wait for the hardware) and tries once per second to open it again.
 //!
 //! ```text
 //!  tick thread                                helper thread
@@ -13,9 +11,8 @@
 //!       └─────────────────── taken over at the next tick ─────────────────────────┘
 //! ```
 //!
-//! There are two descriptors of the same port. The serialport crate sets the line up, holds it exclusively and reads
-//! the modem lines, but its descriptor blocks on a write that does not fit, and it allocates for each error, even for
-//! "no data". Bytes go through the other descriptor, which does neither.
+//! There are two descriptors of the port. The serialport crate sets the line up and reads the modem lines, but it
+//! blocks and allocates; bytes go through the other one.
 
 mod settings;
 
@@ -43,10 +40,8 @@ pub const RETRY: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
-    /// The path does not exist.
     #[error("there is no serial port {}", .0.display())]
     Missing(PathBuf),
-    /// The user has no permission to open it.
     #[error("{}: permission denied; ports usually belong to a group such as dialout", .0.display())]
     Denied(PathBuf),
     #[error("{} is used by another program", .0.display())]
@@ -55,33 +50,27 @@ pub enum OpenError {
     #[error("{} cannot be used as a serial port: {reason}", path.display())]
     Unusable {
         path: PathBuf,
-        /// The error of the operating system.
-        reason: String,
+        reason: String, // the error of the operating system
     },
 }
 
-/// Counts of the line since it was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SerialCounts {
     pub received: u64,
     pub sent: u64,
     /// Bytes that the port did not take, or that were sent while there was no port.
     pub unsent: u64,
-    /// Number of times that the port has disappeared.
-    pub losses: u32,
+    pub losses: u32, // times that the port has disappeared
     /// Number of times that it was opened again.
     pub reopened: u32,
 }
 
-/// A serial line that persists when its port disappears.
 #[derive(Debug)]
 pub struct SerialLine {
     path: PathBuf,
     port: Option<Port>,
-    /// The port took only a part of a frame; the line is not ready for a tick.
-    cut: bool,
-    /// Not all bytes of the last tick were sent.
-    unsent: bool,
+    cut: bool,    // the port took only a part of a frame; the line is not ready for a tick
+    unsent: bool, // not all bytes of the last tick were sent
     counts: SerialCounts,
     dead: SyncSender<Port>,
     opened: Receiver<Port>,
@@ -90,11 +79,7 @@ pub struct SerialLine {
 struct Gone;
 
 impl SerialLine {
-    /// Open a port. This starts the thread that keeps it open, with the priority of the caller: open the line before
-    /// the real-time requests.
-    ///
-    /// # Errors
-    /// [`OpenError`] if the port cannot be opened now. A later loss of the port is not an error.
+    /// Open a port. The thread that keeps it open has the caller's priority: open it before the real-time requests.
     pub fn open(settings: SerialSettings) -> Result<Self, OpenError> {
         let port = Port::open(&settings)?;
         let (dead, to_close) = sync_channel(1);
@@ -117,9 +102,8 @@ impl SerialLine {
         })
     }
 
-    /// Append received bytes to `rx`, as far as there is room; the rest stays in the port. Returns true if the line is
-    /// ready: the port is there and, if it has modem lines, CTS is on (the robot's DTR, A.2). Without a port `rx` is
-    /// empty. Never blocks, never allocates.
+    /// Append received bytes to `rx`, as far as there is room. True if the port is there and, if it has modem lines,
+    /// CTS is on (the robot's DTR, A.2). Never blocks, never allocates.
     pub fn receive(&mut self, rx: &mut LinkBytes) -> bool {
         if self.port.is_none()
             && let Ok(port) = self.opened.try_recv()
@@ -144,9 +128,8 @@ impl SerialLine {
         ready
     }
 
-    /// Send the bytes of a tick; true if the port took them all. A port that takes only a part of a frame is stuck: the
-    /// rest is dropped and counted, the bytes that wait in the port are discarded if possible, and the line is not
-    /// ready in the next tick, so that the link restarts instead of continuing an incomplete frame. Never blocks, never
+    /// Send the bytes of a tick; true if the port took them all. A port that takes only a part is stuck: the rest is
+    /// dropped and counted, and the line is not ready in the next tick, so that the link restarts. Never blocks, never
     /// allocates.
     pub fn send(&mut self, tx: &LinkBytes) -> bool {
         let bytes = tx.as_slice();
@@ -169,8 +152,7 @@ impl SerialLine {
         !self.unsent
     }
 
-    /// True if the port did not take all bytes of the last [`SerialLine::send`]: `link_unsent` of
-    /// [`interfaces::DeviceInputs`].
+    /// True if the port did not take all bytes: `link_unsent` of [`interfaces::DeviceInputs`].
     #[must_use]
     pub const fn has_unsent(&self) -> bool {
         self.unsent
@@ -181,7 +163,6 @@ impl SerialLine {
         let (Some(port), Ok(limit)) = (&self.port, Timespec::try_from(timeout)) else {
             return thread::sleep(timeout);
         };
-        // The result does not matter: the next receive detects an error.
         let _ = poll(&mut [PollFd::new(&port.bytes, PollFlags::IN)], Some(&limit));
     }
 
@@ -215,7 +196,6 @@ impl SerialLine {
     fn lose(&mut self) {
         if let Some(port) = self.port.take() {
             self.counts.losses = self.counts.losses.saturating_add(1);
-            // There is room: the helper has taken the last dead port before it provided this one.
             drop(self.dead.try_send(port));
         }
     }
@@ -242,10 +222,8 @@ fn keep_open(settings: &SerialSettings, dead: &Receiver<Port>, hand_over: &SyncS
 
 #[derive(Debug)]
 struct Port {
-    /// Descriptor for bytes; does not block.
-    bytes: File,
-    /// Descriptor for set-up, exclusive use and modem lines.
-    lines: TTYPort,
+    bytes: File,    // descriptor for bytes; does not block
+    lines: TTYPort, // descriptor for set-up, exclusive use and modem lines
     modem: bool,
 }
 
@@ -253,8 +231,7 @@ impl Port {
     fn open(settings: &SerialSettings) -> Result<Self, OpenError> {
         let path = &settings.path;
         let unusable = |reason: String| OpenError::Unusable { path: path.clone(), reason };
-        // A terminal must not become the controlling terminal of a program without one, or Ctrl-C on it would end the
-        // program.
+        // Ctrl-C on the terminal must not end the program.
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
         let bytes = rustix::fs::open(path, flags, Mode::empty()).map_err(|error| match error {
             Errno::NOENT | Errno::NODEV | Errno::NXIO => OpenError::Missing(path.clone()),
@@ -282,13 +259,11 @@ impl Port {
 
     fn receive(&mut self, rx: &mut LinkBytes) -> Result<bool, Gone> {
         let room = rx.bytes.get_mut(usize::from(rx.length)..).unwrap_or_default();
-        // A read that finds nothing waits for the kernel's worker that carries bytes to the terminal, even while other
-        // programs use the processor: up to half a second on a busy machine. Bytes that the worker has not delivered
-        // have not arrived.
+        // A read that finds nothing waits for the kernel's worker, up to half a second on a busy machine. Bytes that
+        // the worker has not delivered have not arrived.
         let arrived = ioctl_fionread(&self.bytes).map_err(|_| Gone)?;
         if arrived > 0 && !room.is_empty() {
             match self.bytes.read(room) {
-                // The end of file of a terminal is its hang-up.
                 Ok(0) => return Err(Gone),
                 Ok(count) => rx.length += u8::try_from(count).unwrap_or_default(),
                 Err(error) if waits(error.kind()) => {}

@@ -6,7 +6,6 @@ use serialport::{DataBits, FlowControl, SerialPortBuilder, StopBits};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parity {
-    /// No parity bit.
     None,
     Even,
     Odd,

@@ -1,4 +1,4 @@
-//! Common code of several tests of this crate.
+//! Common code of several tests.
 
 use interfaces::{CommonMemory, Header};
 use levels::ladder::PROCESS_COUNT;
