@@ -1,5 +1,5 @@
-//! The control processes from the lowest to the highest: board, buffer size and external inputs.
-//! `cargo run --release -p interfaces --example ladder`.
+//! Prints the processes from the lowest up: board, buffer size, inputs: `cargo run --release -p interfaces --example
+//! ladder`.
 
 #![expect(clippy::print_stdout, reason = "an example prints its results")]
 

@@ -28,8 +28,7 @@ pub enum Detail {
 }
 
 impl Detail {
-    /// Details of the fault that a process reports. `memory` is common memory after the first tick with that report;
-    /// `hws` is the command of the workstation controller.
+    /// Details of the fault that a process reports. `memory` is common memory after the first tick with that report.
     #[must_use]
     pub fn of(process: ProcessId, fault: Fault, hws: &HwsCommand, memory: &CommonMemory) -> Self {
         match (process, fault) {
@@ -63,8 +62,7 @@ impl Detail {
         }
     }
 
-    /// Details of the reason of Task's status, which may originate in a lower process. `memory` is common memory
-    /// after the tick; `hws` is the command of the workstation controller.
+    /// Details of the reason of Task's status, which may originate in a lower process. `memory` is after the tick.
     #[must_use]
     pub fn of_command(reason: Reason, hws: &HwsCommand, memory: &CommonMemory) -> Self {
         let emove = &memory.emove.status;
@@ -74,17 +72,14 @@ impl Detail {
     }
 }
 
-/// The place of E-move, as an offset from the present resolver pose.
 fn off_place(memory: &CommonMemory) -> Option<NearPlace> {
     let place = memory.emove.estimates.place?;
     let present = memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()?;
     Some(NearPlace::seen(place.site.location, &place.pose.to_frame().ok()?, &present))
 }
 
-/// Location of the tool drum (V.4.1).
 const DRUM: &str = "TOOL-TRNS";
 
-/// True for a command that ends with the motion from the drum to its end-at location.
 fn leaves_drum(hws: &HwsCommand) -> bool {
     let word = Name10::clipped(hws.command.as_str());
     ["RELEASE-TOOL", "REMOVE-TOOL"].iter().any(|command| Name10::clipped(command) == word)
@@ -124,8 +119,7 @@ impl fmt::Display for Detail {
     }
 }
 
-/// `HOME is 4.41 in (-X 4.40 in, +Z 0.30 in) and 0.5 degrees away`: the motion to the place along the world axes,
-/// which are those of the joystick box in its frame `WORLD` (III.3.3).
+/// `HOME is 4.41 in (-X 4.40 in, +Z 0.30 in) and 0.5 degrees away`: the motion along the axes of `WORLD` (III.3.3).
 impl fmt::Display for NearPlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { location, inches, degrees, offset } = self;

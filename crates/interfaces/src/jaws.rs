@@ -107,8 +107,7 @@ pub struct JawsOutputs {
     pub valves: JawValves,
 }
 
-/// V-Grip's VG-GRASP, VG-RELEASE, VGRIP-POSE, VG-PAUSE, and Tool-Grip's with TG (VI.4.1, VI.5): `TG-GRASP
-/// (size 1.20 in)`. Size 0 commands no size.
+/// `TG-GRASP (size 1.20 in)`. Size 0 commands no size.
 impl fmt::Display for JawsCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let prefix = if self.end_effector_id == Some(TOOL_GRIPPER) { "TG" } else { "VG" };

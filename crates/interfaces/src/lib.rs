@@ -1,9 +1,8 @@
 //! The buffers between processes, and between the controller and its devices: chapters V and VI.
 //!
-//! Each process owns one record of output buffers; together they are [`CommonMemory`]. Every record starts with a
-//! [`Header`], and only its owner writes it. Variables have the manual's names in Rust spelling: `command-#-in` is
-//! `number`, its echo is `echo`, `^-pose` is `pose` and holds a record number. Variables that are not in the manual
-//! are marked *extension*.
+//! Each process owns one record of output buffers, which starts with a [`Header`]; together they are [`CommonMemory`].
+//! Variables have the manual's names in Rust spelling: `command-#-in` is `number`, its echo is `echo`, `^-pose` is
+//! `pose` and holds a record number. Variables that are not in the manual are marked *extension*.
 
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]

@@ -1,5 +1,4 @@
-//! Inputs of operators at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3) that belong to no device: stop and
-//! start of boards, execution of one level, initialization of the link.
+//! Inputs of operators at the terminals of the boards (IV.2.6, IV.3.2, IV.3.3) that belong to no device.
 //!
 //! | at a terminal | here |
 //! |---|---|
@@ -10,8 +9,8 @@
 //! | DB-DONE in block 903 | `db_done` |
 //! | `<= VALUE` of a variable of a suspended process | an entry of `writes`, for one tick |
 //!
-//! Two inputs have no word in the manual (SPECNOTES.md): `pedestal` is an order to the Active Pedestal, and
-//! `confirmed` is an operator's statement that the held object will not fall. Both are present for one tick.
+//! Two inputs have no word in the manual (SPECNOTES.md): `pedestal`, an order to the Active Pedestal, and `confirmed`,
+//! a statement that the held object will not fall. Both are present for one tick.
 
 use rcs_core::{Plain, name::Name16};
 
@@ -143,8 +142,7 @@ pub struct Write {
     pub grip: i32,
 }
 
-/// True if the variables of a process may be written in the tick after `before`, in which it was not stepped: held by
-/// its switch, on a stopped board, dormant, or suspended for the inspection of a recorded pose.
+/// True if the variables of a process may be written in the tick after `before`, because it was not stepped.
 #[must_use]
 pub const fn may_be_written(process: ProcessId, before: &CommonMemory) -> bool {
     before.header(process).republished

@@ -1,8 +1,7 @@
 //! Subtask and the Active Pedestal (VI.7.2), and the pedestal's own hand and table processes.
 //!
-//! The Active Pedestal is itself a small RCS. The manual gives the interface of its upper process; this project
-//! defines those of hand and table. The hand is nearly identical to the parts gripper (III.9.2) and has the buffers
-//! of Grip.
+//! The Active Pedestal is itself a small RCS. The manual gives the interface of its upper process; this project defines
+//! those of hand and table. The hand has the buffers of Grip (III.9.2).
 
 use core::fmt;
 

@@ -1,5 +1,4 @@
-//! A control process (II.2.2): once per tick it reads common memory of the previous tick, decides, and writes its own
-//! output buffers.
+//! A control process (II.2.2): reads common memory of the previous tick, decides, writes its own output buffers.
 
 use rcs_core::{Plain, table::Table, tick::Tick};
 
@@ -53,8 +52,7 @@ pub trait Process<Data: ?Sized> {
         outputs: &mut Self::Outputs,
     );
 
-    /// Accept a value that an operator writes while the process is not stepped (IV.2.6). `outputs` contains the
-    /// previous outputs.
+    /// Accept a value that an operator writes while the process is not stepped (IV.2.6), over the previous `outputs`.
     fn write(&mut self, _: &Write, _: &Inputs<'_, Data>, _: &mut Self::Outputs) {}
 
     /// State of the process.

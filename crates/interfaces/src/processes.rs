@@ -1,8 +1,7 @@
 //! The control processes, each registered once.
 //!
 //! [`for_each_process!`](crate::for_each_process!) is the only list. It generates [`ProcessId`] and [`CommonMemory`],
-//! and determines the order of the digest, the ladder, the boards and their data exchange, shared memory, and the
-//! chains that explain a failure.
+//! and determines the order of everything that goes through all processes.
 
 use rcs_core::{
     Plain,

@@ -1,7 +1,6 @@
 //! Record numbers: the values of the manual's variables ending in `-^` (V.1.2 `traj-para-^`, V.2.2 `pose-^-in` …).
 //!
-//! Each file of chapter VII has its own type. In a buffer the null number is an absent value, so logs show `none`
-//! instead of 0.
+//! Each file of chapter VII has its own type. The null number is an absent value: logs show `none`, not 0.
 
 use rcs_core::{
     Plain,

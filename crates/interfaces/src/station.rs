@@ -1,8 +1,7 @@
 //! The operator's words for keys, switches and emergency stops of the station.
 //!
-//! Jobs, operator requests and completion read the same words ([`following`]). The job and the simulated cell share
-//! the corresponding actions. All of it is an extension: the manual describes the controls (III.3.3, III.6, IV.1,
-//! IV.3.3) and has no lines for them.
+//! Jobs, operator requests and completion read the same words ([`following`]). All of it is an extension: the manual
+//! describes the controls (III.3.3, III.6, IV.1, IV.3.3) and has no lines for them.
 
 mod action;
 
@@ -334,8 +333,7 @@ pub enum TableMode {
     Prog,
 }
 
-/// The words that can follow the first words of a line, as lists of enum variants. `None` if a name, a number or
-/// nothing follows.
+/// The words that can follow the first words of a line; `None` if a name, a number or nothing follows.
 #[must_use]
 pub fn following(words: &[&str]) -> Option<&'static [&'static EnumSchema]> {
     let [verb, rest @ ..] = words else { return Some(&[LineVerb::ENUM]) };

@@ -1,5 +1,4 @@
-//! The path along which the joystick box has moved the robot: an extension of E-move's outputs
-//! (docs/design/recovery.md "Return").
+//! The path along which the joystick box has moved the robot: an extension (docs/design/recovery.md "Return").
 
 use geometry::pose::Pose;
 use rcs_core::Plain;

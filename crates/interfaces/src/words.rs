@@ -5,7 +5,6 @@ use core::fmt;
 use geometry::units::Length;
 use rcs_core::name::Name;
 
-/// The object or sensor of a command, if it has one.
 pub(super) fn name<const N: usize>(f: &mut fmt::Formatter<'_>, name: Option<&Name<N>>) -> fmt::Result {
     name.map_or(Ok(()), |name| write!(f, " {name}"))
 }

@@ -52,10 +52,8 @@ const TURN: RangeInclusive<i64> = 0..=RESOLVER_COUNTS as i64 - 1;
 const KNOB: RangeInclusive<i64> = 0..=KNOB_FULL as i64;
 #[expect(clippy::as_conversions, reason = "widens, in a constant")]
 const STICK: RangeInclusive<i64> = -(KNOB_FULL as i64)..=KNOB_FULL as i64;
-/// Numbers of 32 bits.
 const COUNT: RangeInclusive<i64> = -0x8000_0000..=0x7FFF_FFFF;
-/// An order number.
-const NUMBER: RangeInclusive<i64> = 0..=0xFFFF_FFFF;
+const NUMBER: RangeInclusive<i64> = 0..=0xFFFF_FFFF; // of an order
 /// `endeff-id#` that two id pins can show.
 const ID: RangeInclusive<i64> = 0..=3;
 /// The four sensors of a holster together.

@@ -1,11 +1,9 @@
 //! Points: the words of the devices by name, each as a number.
 //!
-//! One list serves faults of the simulated cell, the mapping of real devices, screens and logs. An [`Input`] is a
-//! word of [`DeviceInputs`](super::DeviceInputs), an [`Output`] one of [`DeviceOutputs`](super::DeviceOutputs). A
-//! [`Station`] is a word of the workstation's devices, which are not in the controller's records.
-//!
-//! A name denotes a *connection* at the controller's boards (chapter III). The three grippers share the connection of
-//! the potentiometer (III.3.7), so `grip.potentiometer` is that of the attached gripper.
+//! One list serves faults, the mapping of real devices, screens and logs. An [`Input`] is a word of
+//! [`DeviceInputs`](super::DeviceInputs), an [`Output`] one of [`DeviceOutputs`](super::DeviceOutputs), a [`Station`]
+//! one of the workstation's devices. A name denotes a *connection* at the controller's boards (chapter III): the three
+//! grippers share that of the potentiometer (III.3.7).
 
 mod inputs;
 mod outputs;

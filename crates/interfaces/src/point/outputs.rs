@@ -17,10 +17,8 @@ pub struct Output(&'static Row);
 type Row = (&'static str, Group, RangeInclusive<i64>, fn(&mut DeviceOutputs) -> Word<'_>);
 
 const BIT: RangeInclusive<i64> = 0..=1;
-/// An order number.
-const NUMBER: RangeInclusive<i64> = 0..=0xFFFF_FFFF;
+const NUMBER: RangeInclusive<i64> = 0..=0xFFFF_FFFF; // of an order
 const ORDER: RangeInclusive<i64> = 0..=3;
-/// Numbers of 32 bits.
 const COUNT: RangeInclusive<i64> = -0x8000_0000..=0x7FFF_FFFF;
 
 static OUTPUTS: [Row; 30] = [

@@ -7,11 +7,10 @@ use super::{BoxButton, EStop, Keyswitch, Switch};
 /// An action at the joystick box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoxAction {
-    /// Set the coordinate switches: bits of [`joystick_frame`](crate::device::joystick_frame). 0 also releases the
-    /// stick and the buttons.
+    /// Set the coordinate switches: bits of [`joystick_frame`](crate::device::joystick_frame). 0 also releases stick
+    /// and buttons.
     Frame(u8),
-    /// Deflect the stick for a number of ticks: -1000 to 1000. It replaces the present deflection; 0 0 releases the
-    /// stick.
+    /// Deflect the stick, -1000 to 1000, for a number of ticks; replaces the present deflection. 0 0 releases it.
     Stick {
         /// Along X, or pitch.
         x: i16,
