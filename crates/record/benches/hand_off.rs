@@ -1,5 +1,4 @@
-//! Cost of recording a tick: time of [`Recorder::tick`] in the thread of the ticks, at the pace of a run in
-//! real time shortened to 1 ms, and the time of [`Recorder::cell`], which belongs to the simulated cell.
+//! Cost of recording: [`Recorder::tick`] in the thread of the ticks, with 1 ms per tick, and [`Recorder::cell`].
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "figures are what it is for")]
 
@@ -46,7 +45,6 @@ fn main() {
         Ok(summary) => println!("{} ticks, {} bytes, lost {:?}", summary.ticks, summary.bytes, summary.lost),
         Err(error) => eprintln!("{error}"),
     }
-    // The benchmark does not need the file.
     let _ = std::fs::remove_file(path);
 }
 

@@ -9,7 +9,6 @@ use record::Log;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = env::args().nth(1).ok_or("the name of a log was expected")?;
     let log = Log::open(Path::new(&file))?;
-    // In lines of decision tables, the code is the table's source file.
     for line in log.lines().filter(|line| !line.code.is_empty() && !line.code.ends_with(".rs")) {
         println!("tick {:>6}  {:<20} {}: {}", line.tick, line.code, line.source, line.text);
     }

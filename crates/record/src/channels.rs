@@ -1,8 +1,6 @@
-//! The channels of the buffers: one per buffer of [`CommonMemory`] and [`ExternalInputs`], found in their schemas.
-//!
-//! The outputs of a process are a header and buffers. Each buffer has a channel `/process/buffer`, a command
-//! `/process/buffer_command`; the header has `/process/row` ([`crate::rows`]). A message is written when its buffer
-//! changes, and at least every ten seconds, so that a viewer that starts in the middle soon finds a value.
+//! The channels of the buffers, found in the schemas of [`CommonMemory`] and [`ExternalInputs`]: `/process/buffer`, for
+//! commands `/process/buffer_command`, and `/process/row` ([`crate::rows`]). A message is written when its buffer
+//! changes, and at least every ten seconds for a viewer that starts in the middle.
 
 use std::{
     collections::BTreeMap,
@@ -26,15 +24,12 @@ use crate::{
     tap::{Channel, Tap},
 };
 
-/// Encoding of schemas and messages in protobuf.
 pub const PROTOBUF: &str = "protobuf";
 
 /// An MCAP file in which every message has the time of its tick.
 pub struct Output<W: Write + Seek> {
     pub mcap: mcap::Writer<W>,
-    /// Time of tick 0.
     pub epoch: Epoch,
-    /// Another receiver of the messages.
     pub tap: Option<Box<dyn Tap>>,
 }
 
@@ -60,7 +55,6 @@ impl<W: Write + Seek> Output<W> {
         Ok(id)
     }
 
-    /// Write a message of a tick, and pass it to the tap.
     pub fn put(&mut self, channel: u16, tick: Tick, data: &[u8]) -> McapResult<()> {
         self.write(channel, tick, data)?;
         self.pass(channel, tick, data);
@@ -76,7 +70,6 @@ impl<W: Write + Seek> Output<W> {
         self.mcap.write_to_known_channel(&header, data)
     }
 
-    /// Pass a message of a tick to the tap.
     pub fn pass(&mut self, channel: u16, tick: Tick, data: &[u8]) {
         if let Some(tap) = &mut self.tap {
             tap.message(channel, self.epoch.of(tick), data);
@@ -91,16 +84,14 @@ impl<W: Write + Seek> Output<W> {
     }
 }
 
-/// Fields that change by themselves while the robot runs: clocks of the T3 interface, frames on the line, and
-/// numbers of changing poses. They do not cause a message of their buffer; their values are on `/replay`.
+/// Fields that change by themselves: clocks of the T3 interface, frames on the line, numbers of changing poses. They do
+/// not cause a message of their buffer; their values are on `/replay`.
 const CLOCKS: [&str; 7] =
     ["cycle", "cycle_echo", "frames", "acknowledged", "reference_pose", "present_pose", "sensor_pose"];
 
-/// Buffers that change in every tick and repeat other data: Prim's changing poses are the frames of
-/// `/t3i/status`. They are written only with the repetitions.
+/// Buffers that repeat other data in every tick; written only with the repetitions.
 const SCRATCH: [&str; 1] = ["/prim/poses"];
 
-/// A part of an image with a channel of its own.
 struct Buffer {
     channel: u16,
     bytes: Range<usize>,
@@ -111,7 +102,6 @@ struct Buffer {
 
 pub struct Buffers(Vec<Buffer>);
 
-/// Position of a buffer in its image, and its topic.
 struct Place {
     topic: String,
     bytes: Range<usize>,
@@ -158,7 +148,6 @@ fn memory_places() -> Vec<Place> {
     found
 }
 
-/// Ranges of a buffer at `offset` that contain no [`CLOCKS`].
 fn compared(schema: &StructSchema, offset: usize) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::new();
     for leaf in layout::leaves_of(schema.fields) {
@@ -175,12 +164,10 @@ fn compared(schema: &StructSchema, offset: usize) -> Vec<Range<usize>> {
 }
 
 impl Buffers {
-    /// Channels of the buffers of [`ExternalInputs`].
     pub fn external<W: Write + Seek>(output: &mut Output<W>) -> McapResult<Self> {
         Self::open(output, external_places())
     }
 
-    /// Channels of the buffers of [`CommonMemory`].
     pub fn memory<W: Write + Seek>(output: &mut Output<W>) -> McapResult<Self> {
         Self::open(output, memory_places())
     }
@@ -219,7 +206,6 @@ impl Buffers {
     }
 }
 
-/// The header of one process in the image of common memory.
 #[derive(Clone, Copy, Debug)]
 pub struct HeaderPlace {
     pub field: &'static str,
@@ -229,13 +215,11 @@ pub struct HeaderPlace {
 }
 
 impl HeaderPlace {
-    /// The header in an image; the default if the image is too short.
     #[must_use]
     pub fn read(&self, image: &[u8]) -> Header {
         image.get(self.offset..).and_then(|bytes| plain::from_bytes(bytes).ok()).unwrap_or_default()
     }
 
-    /// The row that a header names.
     #[must_use]
     pub fn fired(&self, header: &Header) -> Option<Fired> {
         self.process.fired(header)

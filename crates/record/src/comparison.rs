@@ -10,12 +10,10 @@ use crate::{
     reader::LoggedTick,
 };
 
-/// The first difference of a replay from the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     pub tick: Tick,
-    /// The process and the buffer: `prim.status`; `state.prim` for the state of a process.
-    pub buffer: String,
+    pub buffer: String, // or `state.prim`
     pub field: String,
     pub was: String,
     pub is: String,
@@ -30,7 +28,6 @@ impl std::fmt::Display for Difference {
     }
 }
 
-/// Compares ticks with the log: the fields of the byte images.
 pub struct Comparison {
     memory_leaves: Vec<Leaf>,
     state_leaves: Vec<Leaf>,
@@ -52,8 +49,7 @@ impl Comparison {
         }
     }
 
-    /// The first difference of a recorded tick from the byte images of common memory and of the states of the
-    /// processes, if the log has states.
+    /// The first difference of a recorded tick from the byte images of common memory and, if recorded, of the states.
     pub fn difference(
         &self,
         logged: &LoggedTick,
@@ -81,7 +77,6 @@ impl Comparison {
         Some(difference(leaf, format!("state.{process}"), field, recorded, states))
     }
 
-    /// The row by which the process of a field has decided in the replay.
     fn row(&self, leaf: &Leaf, memory: &[u8]) -> String {
         let process = leaf.path.split('.').next().unwrap_or_default();
         let Some(place) = self.headers.iter().find(|place| place.field == process) else {

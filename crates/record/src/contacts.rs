@@ -1,6 +1,4 @@
-//! Marks where the robot, or its load, touches something: `/contacts`.
-//!
-//! A message has all marks that are valid from its tick on, so that a reader needs only the last message.
+//! Marks of the contacts: `/contacts`. A message has all valid marks, so that a reader needs only the last one.
 
 use crate::{
     input::Touch,
@@ -9,13 +7,11 @@ use crate::{
 
 pub const CONTACTS: &str = "/contacts";
 
-/// An inch, metres.
 pub(crate) const INCH: f64 = 0.0254;
 /// The mark of a permitted contact: its diameter, m, and its colour.
 const PERMITTED: (f64, Colour) = (0.03, [0.15, 0.75, 0.30, 0.9]);
 const COLLISION: (f64, Colour) = (0.06, [0.90, 0.10, 0.10, 0.85]);
-/// Height of the letters at a collision, m.
-const LETTERS: f64 = 0.05;
+const LETTERS: f64 = 0.05; // height of the letters at a collision, m
 /// Height of the letters above the middle of a mark, and distance of those of further collisions above it, m.
 const ABOVE: (f64, f64) = (0.14, 0.07);
 
@@ -56,7 +52,6 @@ mod tests {
         Touch { mover, obstacle, point: [10.0, -20.0, 5.0], depth: 0.25, collides }
     }
 
-    /// Number of occurrences of a field in a message.
     fn count(data: &[u8], number: u64) -> usize {
         Fields(data).filter(|field| matches!(field, (n, Value::Bytes(_)) if *n == number)).count()
     }

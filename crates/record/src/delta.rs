@@ -1,16 +1,14 @@
 //! Images of one tick as their difference from the previous tick, field by field.
 //!
-//! In a quiet tick a few fields of some hundreds change, and most of those by a little: a clock by one, a
-//! position by a step, a converter by its noise. A delta therefore names the changed fields and gives each as
-//! the difference of two numbers:
+//! In a quiet tick a few of some hundreds of fields change, most by a little. A delta names the changed fields and
+//! gives each as the difference of two numbers, all as varints with the sign in the lowest bit:
 //!
 //! ```text
 //! count of changed fields | fields to skip before each | the differences in sequence
 //! ```
 //!
-//! all as varints, differences with their sign in the lowest bit. The skips are stored together because they
-//! hardly differ from tick to tick, so that they compress well. Names and frames on the line are bytes, not
-//! numbers: their difference is a list of runs. A full image is a delta from zeros.
+//! The skips are stored together because they hardly differ, and compress well. Names and frames on the line are bytes:
+//! their difference is a list of runs. A full image is a delta from zeros.
 
 use rcs_core::{plain::StructSchema, reflect};
 
@@ -19,10 +17,8 @@ use crate::{
     proto::wire::{put_varint, take_varint, unzigzag, zigzag},
 };
 
-/// Equal bytes that end a run: a shorter gap costs more as a new run than as bytes.
-const GAP: usize = 4;
+const GAP: usize = 4; // equal bytes that end a run: a shorter gap costs more as a new run than as bytes
 
-/// Makes and applies the deltas of one record's images.
 #[derive(Clone, Debug)]
 pub struct Codec {
     pieces: Vec<Piece>,
@@ -40,7 +36,6 @@ impl Codec {
         self.size
     }
 
-    /// Append to `out` the delta that turns `from` into `to`.
     pub fn encode(&self, from: &[u8], to: &[u8], out: &mut Vec<u8>) {
         let (mut count, mut skipped) = (0, 0);
         let (mut skips, mut values) = (Vec::new(), Vec::new());
@@ -251,9 +246,8 @@ mod tests {
         }
 
         #[test]
-        fn no_bytes_are_too_strange(delta in prop::collection::vec(any::<u8>(), 0..200)) {
+        fn any_bytes_decode_without_panic(delta in prop::collection::vec(any::<u8>(), 0..200)) {
             let codec = Codec::new(ExternalInputs::STRUCT);
-            // Only termination is tested, not the result.
             let _ = codec.apply(&delta, &mut vec![0; codec.size()]);
         }
     }

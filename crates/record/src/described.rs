@@ -14,7 +14,6 @@ pub struct Described {
 }
 
 impl Described {
-    /// Add a record that is a channel or schema.
     pub fn note(&mut self, record: &Record<'_>) {
         match record {
             Record::Channel(channel) => {
@@ -27,7 +26,6 @@ impl Described {
         }
     }
 
-    /// Passes the channels to a tap, except those without a schema.
     pub fn tell(&self, tap: &mut dyn Tap) {
         for (id, channel) in &self.channels {
             let Some((header, schema)) = self.schemas.get(&channel.schema_id) else { continue };

@@ -23,24 +23,20 @@ use crate::{
     writer::{FULL_SET, LogWriter, TickRecord, Written},
 };
 
-/// Sleep of an idle writer: an eighth of a tick.
-const IDLE: Duration = Duration::from_millis(5);
+const IDLE: Duration = Duration::from_millis(5); // sleep of an idle writer: an eighth of a tick
 
 fn text_of(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned()
 }
 
-/// The data with which the next log of the same run starts.
 pub(crate) struct Rotation {
     pub(crate) limit: LogLimit,
     /// Head of each log, with the files that were added to the run.
     pub(crate) setup: Setup,
     pub(crate) durable: bool,
-    /// Number of logs that have ended.
     pub(crate) count: usize,
 }
 
-/// The writer's end of the rings.
 pub(crate) struct Drain {
     pub(crate) log: LogWriter<Sink>,
     pub(crate) file: LogFile,
@@ -59,8 +55,7 @@ impl Drain {
     /// Write until the run has ended. Returns the last log, and the number of earlier ones.
     pub(crate) fn run(mut self) -> Result<(Written, usize), RecordError> {
         loop {
-            // Read before the ring is emptied, so that entries pushed before the run dropped the producer are
-            // still found.
+            // Read before the ring is emptied: entries pushed before the run dropped the producer are still found.
             let ended = self.ticks.is_abandoned();
             while let Ok(record) = self.ticks.pop() {
                 if record.tick.0.is_multiple_of(FULL_SET) {
@@ -84,7 +79,6 @@ impl Drain {
     }
 
     /// End a log that has reached its size, and begin the next one with this tick, whose states are recorded.
-    /// Returns the tick as the first one of a log, without the ticks before it.
     fn rotate(&mut self, record: &TickRecord) -> Result<TickRecord, RecordError> {
         let Some(rotation) = &mut self.rotation else { return Ok(*record) };
         if !self.log.has_ticks() || self.file.length()? < rotation.limit.bytes {
@@ -158,7 +152,6 @@ impl Drain {
     }
 }
 
-/// The entry of a tick in a ring; earlier entries are discarded.
 fn latest<T>(ring: &mut Consumer<T>, tick: Tick, tick_of: impl Fn(&T) -> Tick) -> Option<T> {
     while ring.peek().is_ok_and(|entry| tick_of(entry) < tick) {
         let _ = ring.pop();

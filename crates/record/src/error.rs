@@ -8,33 +8,25 @@ use std::{
 use diagnostics::nearest;
 use os_io::files;
 
-/// Errors of writing a log: it ended before the run, or never began.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// The file or its directory cannot be made.
     #[error("the log {path} cannot be created: {source}")]
     Create { path: PathBuf, source: std::io::Error },
     #[error("the log {path} is being written by another run: name another file with --log")]
     InUse { path: PathBuf },
-    /// The file was removed or replaced during the run.
     #[error("the log {path} was removed during the run")]
     Removed { path: PathBuf },
-    /// The head of the log cannot be written: the disk is full, or a limit of file sizes is below the head.
     #[error("the log could not be begun: {}", deepest(.0))]
     Begin(#[source] mcap::McapError),
-    /// Writing failed: the disk is full, or the device is missing.
     #[error("the log could not be written further: {}", deepest(.0))]
     Write(#[from] mcap::McapError),
-    /// The cell has more links or joints than a frame of it can carry.
     #[error("a cell of at most {allowed} {what} was expected, this one has {found}")]
     CellTooLarge {
         what: &'static str,
-        /// Number that a [`crate::CellFrame`] can carry.
-        allowed: usize,
+        allowed: usize, // by a [`crate::CellFrame`]
         found: usize,
     },
-    /// The writer thread cannot be started, or ended without a result.
     #[error("the thread that writes the log failed")]
     Thread,
 }
@@ -47,16 +39,13 @@ fn deepest(error: &dyn std::error::Error) -> String {
     }
 }
 
-/// Errors of opening a file as a log.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
     #[error("{path}: {source}")]
     Unreadable { path: PathBuf, source: std::io::Error },
-    /// The file is not an MCAP file.
     #[error("{path} is not an MCAP file: {source}")]
     NotMcap { path: PathBuf, source: mcap::McapError },
-    /// An MCAP file, but not of this program.
     #[error(
         "{path} is an MCAP file without the metadata {:?}: it was not written by this program",
         crate::names::RUN
@@ -64,10 +53,8 @@ pub enum ReadError {
     NotALog { path: PathBuf },
     #[error("{path} holds the logs of several runs: open the log of one run")]
     Merged { path: PathBuf },
-    /// The metadata of the run cannot be read.
     #[error("{path} is damaged at its head: without the metadata of the run nothing in it can be read")]
     HeadDamaged { path: PathBuf },
-    /// A log of a program with another layout of buffers.
     #[error(
         "the log has layout {found}, this program {expected}: use the program that wrote it{}",
         by(.version)
@@ -75,17 +62,14 @@ pub enum ReadError {
     OtherLayout {
         expected: String,
         found: String,
-        /// Version of the program that wrote it, if known.
-        version: String,
+        version: String, // version of the program that wrote it, if known
     },
-    /// A message on `/replay` that does not fit the layout.
     #[error("the record of tick {tick} does not fit the layout: the log is damaged")]
     Damaged { tick: u64 },
 }
 
 impl ReadError {
-    /// The error as text, with the path of the log once. For a missing file, also the nearest name of a log in
-    /// the directory.
+    /// `path` is that of the log. For a missing file, also the nearest name of a log in the directory.
     #[must_use]
     pub fn of(&self, path: &Path) -> String {
         let (named, mut text) = (path.display().to_string(), self.to_string());
@@ -115,16 +99,12 @@ fn by(version: &str) -> String {
 pub enum ReplayError {
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The log has no ticks.
     #[error("the log holds no tick there that a replay could start from")]
     Empty,
-    /// The recorded inputs of a tick are not a valid record.
     #[error("the inputs of tick {tick} cannot be read: {source}")]
     Inputs { tick: u64, source: rcs_core::plain::DecodeError },
-    /// A tick uses task data that are not in the log.
     #[error("tick {tick} uses generation {generation} of the task data, which is not in the log")]
     Generation { tick: u64, generation: u32 },
-    /// The attached task data does not load.
     #[error("the attached task data does not load:\n{0}")]
     TaskData(String),
 }

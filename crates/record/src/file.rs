@@ -15,23 +15,19 @@ use time::OffsetDateTime;
 
 use crate::error::RecordError;
 
-/// A file that only this run writes, until it is dropped. It is then removed if it was created for a log that
-/// never began.
+/// A file that only this run writes. If no log began, dropping it removes a created file.
 pub struct LogFile {
     path: PathBuf,
     file: File,
     identity: (u64, u64),
-    /// True if the file is new, and the log has not begun.
-    unused: bool,
+    unused: bool, // true if the file is new, and the log has not begun
     /// True to rename an earlier log at the path when this one begins, false to replace it.
     keeps_earlier: bool,
 }
 
 impl LogFile {
-    /// Claim a file, which is created if necessary, with its directory. Its content stays until the log begins.
-    ///
-    /// # Errors
-    /// [`RecordError::InUse`] if another run writes it, [`RecordError::Create`] if it cannot be opened.
+    /// Claim a file, created if necessary with its directory. Its content stays until the log begins. Fails with
+    /// [`RecordError::InUse`] if another run writes it.
     pub fn claim(path: &Path) -> Result<Self, RecordError> {
         let failed = |source| RecordError::Create { path: path.to_owned(), source };
         if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
@@ -56,11 +52,8 @@ impl LogFile {
         }
     }
 
-    /// Claim `<name>.mcap` in a directory, or `<name>-2.mcap` and so on while other runs write the earlier ones. A log
-    /// of an earlier run is kept under the time of its end, for example `<name>-2026-11-27T214500Z.mcap`.
-    ///
-    /// # Errors
-    /// [`RecordError::Create`].
+    /// Claim `<name>.mcap`, or `<name>-2.mcap` and so on while other runs write the earlier ones. A log of an earlier
+    /// run is kept under the time of its end, for example `<name>-2026-11-27T214500Z.mcap`.
     pub fn claim_free(directory: &Path, name: &str) -> Result<Self, RecordError> {
         let mut number = 1_u32;
         loop {
@@ -81,20 +74,13 @@ impl LogFile {
         &self.path
     }
 
-    /// Size of the file, bytes.
-    ///
-    /// # Errors
-    /// [`RecordError::Removed`] if it cannot be read.
     pub(crate) fn length(&self) -> Result<u64, RecordError> {
         let found = self.file.metadata();
         found.map(|found| found.len()).map_err(|_| RecordError::Removed { path: self.path.clone() })
     }
 
-    /// End this log, which stays open until its writer has finished, and begin a new one at its path. Returns
-    /// the new file, and the new name of the ended one.
-    ///
-    /// # Errors
-    /// [`RecordError`] if the file cannot be renamed, or the new one cannot be created.
+    /// End this log, which stays open for its writer, and begin a new one at its path. Returns the new file, and the
+    /// new name of the ended one.
     pub(crate) fn succeeded(&self) -> Result<(Self, PathBuf), RecordError> {
         let name = free_name(&self.path, SystemTime::now());
         let failed = |source| RecordError::Create { path: self.path.clone(), source };
@@ -113,7 +99,6 @@ impl LogFile {
             if earlier.len() > 0 {
                 let ended = earlier.modified().map_err(failed(&self.path))?;
                 fs::rename(&self.path, free_name(&self.path, ended)).map_err(failed(&self.path))?;
-                // The lock of the renamed file ends with its handle.
                 *self = Self::claim(&self.path.clone())?;
             }
         }
@@ -121,10 +106,6 @@ impl LogFile {
         self.file.set_len(0).and_then(|()| self.file.try_clone()).map_err(failed(&self.path))
     }
 
-    /// Check that the file is still at its path.
-    ///
-    /// # Errors
-    /// [`RecordError::Removed`].
     pub(crate) fn look(&self) -> Result<(), RecordError> {
         match fs::metadata(&self.path) {
             Ok(found) if (found.dev(), found.ino()) == self.identity => Ok(()),
@@ -136,7 +117,6 @@ impl LogFile {
 impl Drop for LogFile {
     fn drop(&mut self) {
         if self.unused && self.look().is_ok() {
-            // A file that cannot be removed stays, but is empty.
             let _ = fs::remove_file(&self.path);
         }
     }
@@ -158,7 +138,6 @@ fn free_name(path: &Path, ended: SystemTime) -> PathBuf {
     let numbers = (2_u32..).map(|number| format!("{stem}-{number}.mcap"));
     let mut names =
         std::iter::once(format!("{stem}.mcap")).chain(numbers).map(|name| path.with_file_name(name));
-    // The chain of names is infinite.
     names.find(|name| fs::symlink_metadata(name).is_err()).unwrap_or_else(|| path.to_owned())
 }
 
@@ -183,8 +162,7 @@ mod tests {
 
     use super::*;
 
-    /// The first bytes of a log.
-    const EARLIER: &[u8] = b"\x89MCAP0\r\nearlier";
+    const EARLIER: &[u8] = b"\x89MCAP0\r\nearlier"; // the first bytes of a log
 
     #[test]
     fn unused_new_file_is_removed() {

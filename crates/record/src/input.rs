@@ -1,5 +1,3 @@
-//! Data that the run gives to its log: at the start, in each tick, and at the end.
-
 use std::{
     collections::BTreeMap,
     time::{SystemTime, UNIX_EPOCH},
@@ -17,11 +15,10 @@ use crate::{
 pub const MAX_LINKS: usize = 64;
 pub const MAX_JOINTS: usize = 16;
 
-/// Time of tick 0 of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Epoch {
-    /// The beginning of the day on which the manual's system was finished, 1987-12-16. It is for runs in fast
-    /// clock, whose logs must have the same bytes at any time.
+    /// The beginning of 1987-12-16, the day on which the manual's system was finished: for runs in fast clock, whose
+    /// logs must have the same bytes at any time.
     Fixed,
     /// Nanoseconds since 1970: for runs in real time.
     At(u64),
@@ -45,14 +42,11 @@ impl Epoch {
     }
 }
 
-/// A file attached to the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attachment {
     /// Name with slashes. Names that begin with [`Attachment::TASK_DATA`] are the task data of the run.
     pub name: String,
-    /// Media type: `text/plain`, `application/toml`, `application/xml`.
-    pub media_type: String,
-    /// The bytes.
+    pub media_type: String, // `text/plain`, `application/toml`, `application/xml`
     pub data: Vec<u8>,
 }
 
@@ -100,7 +94,6 @@ impl Attachment {
         Some((generation.parse().ok()?, self.source(name)))
     }
 
-    /// A job with which an operator has replaced the rest of the job. The first has the number 1.
     #[must_use]
     pub fn played(number: u32, job: &Source) -> Self {
         Self::text(&format!("{}{number}/{}", Self::PLAYED, job.name), &job.text)
@@ -113,7 +106,6 @@ impl Attachment {
         Some((number.parse().ok()?, self.source(name)))
     }
 
-    /// The text of the attachment, as task data.
     #[must_use]
     pub fn source(&self, name: &str) -> Source {
         Source { name: name.to_owned(), text: String::from_utf8_lossy(&self.data).into_owned().into() }
@@ -122,22 +114,16 @@ impl Attachment {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Model {
-    /// Its name, unique among the models.
-    pub name: String,
-    /// The link with which it moves.
-    pub frame: String,
-    /// The file: glTF 2.0 in binary form, metres, Y up.
-    pub glb: Vec<u8>,
+    pub name: String,  // unique
+    pub frame: String, // with which it moves
+    pub glb: Vec<u8>,  // glTF 2.0 in binary form, metres, Y up
 }
 
-/// A name drawn next to a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
     pub text: String,
-    /// The link with which it moves.
-    pub frame: String,
-    /// Position in the frame of the link, metres.
-    pub position: [f64; 3],
+    pub frame: String,      // with which it moves
+    pub position: [f64; 3], // position in the frame of the link, metres
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -150,12 +136,10 @@ pub struct CellModel {
     pub links: Vec<Link>,
     /// Fixed links, with their places in their parents. A viewer draws no link without a transform, even with a URDF.
     pub fixed: Vec<(Link, Transform)>,
-    /// Names of the joints in the order of [`CellFrame::joints`].
-    pub joints: Vec<String>,
+    pub joints: Vec<String>, // in the order of [`CellFrame::joints`]
 }
 
 impl CellModel {
-    /// Refuses a cell that a [`CellFrame`] cannot carry.
     pub(crate) const fn check(&self) -> Result<(), RecordError> {
         let (links, joints) = (self.links.len(), self.joints.len());
         if links > MAX_LINKS {
@@ -168,7 +152,6 @@ impl CellModel {
     }
 }
 
-/// The positions of everything in the cell in one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellFrame {
     pub tick: Tick,
@@ -181,13 +164,11 @@ pub struct CellFrame {
 }
 
 impl CellFrame {
-    /// A frame without any motion yet.
     #[must_use]
     pub const fn new(tick: Tick) -> Self {
         Self { tick, transforms: [Transform::IDENTITY; MAX_LINKS], joints: [0.0; MAX_JOINTS], digest: None }
     }
 
-    /// The same frame with the digest of the cell.
     #[must_use]
     pub const fn with_digest(mut self, digest: u64) -> Self {
         self.digest = Some(digest);
@@ -208,16 +189,12 @@ impl CellFrame {
     }
 }
 
-/// A contact of the robot, or of a part that it carries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Touch {
-    /// The link or part, by its name in the cell.
     pub mover: String,
     pub obstacle: String,
-    /// Point of deepest penetration, world, inches.
-    pub point: [f64; 3],
-    /// Depth of penetration, inches.
-    pub depth: f64,
+    pub point: [f64; 3], // point of deepest penetration, world, inches
+    pub depth: f64,      // inches
     /// True if the cell description does not permit the contact.
     pub collides: bool,
 }
@@ -225,21 +202,15 @@ pub struct Touch {
 /// Data for viewers, in addition to the frames of the cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shown {
-    /// The picture of the wrist camera: a PNG file.
     Picture(Vec<u8>),
-    /// All contacts from this tick on.
     Touches(Vec<Touch>),
-    /// A state of the run from this tick on.
     View(View),
 }
 
-/// Data of a log before the first tick.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// Time of tick 0.
-    pub epoch: Epoch,
-    /// Metadata of the run: version, seed, command line, job, configuration digest, real-time verdict. The layout
-    /// version is added.
+    pub epoch: Epoch, // of tick 0
+    /// Version, seed, command line, job, configuration digest, real-time verdict. The layout version is added.
     pub run: BTreeMap<String, String>,
     /// Task data, job, cell description. URDF and layout are added.
     pub attachments: Vec<Attachment>,
@@ -253,12 +224,9 @@ impl Default for Setup {
     }
 }
 
-/// Data of a log after the last tick.
 #[derive(Clone, Debug, Default)]
 pub struct End {
-    /// Digest of all output buffers of all ticks.
-    pub digest: Option<u64>,
-    /// Ending of the job, one line.
+    pub digest: Option<u64>, // of all output buffers of all ticks
     pub result: String,
     /// Further facts of the run: real-time verdict, overruns, faults, places of the parts.
     pub facts: BTreeMap<String, String>,
@@ -267,7 +235,6 @@ pub struct End {
 /// Longest text of a note, bytes; a longer one is cut.
 pub const NOTE: usize = 192;
 
-/// A line for `/log` on its way to the writer.
 #[derive(Clone, Copy)]
 pub(crate) struct Note {
     pub(crate) tick: Tick,
@@ -283,12 +250,10 @@ pub struct Lost {
     /// Number of ticks. The run cannot be replayed across them.
     pub ticks: u64,
     pub frames: u64,
-    /// Lines for `/log`.
     pub notes: u64,
     /// Files of the run, such as reloads. Without them the run cannot be replayed to the end.
     pub files: u64,
-    /// Pictures of the camera, lists of contacts, and states of the run.
-    pub shown: u64,
+    pub shown: u64, // pictures, lists of contacts, states of the run
     /// Requests of operators. Without them the inputs cannot be replayed.
     pub operators: u64,
 }

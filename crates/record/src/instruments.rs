@@ -1,6 +1,4 @@
-//! Openings and forces of the grippers in SI units: `/instruments`, for the curves of viewers.
-//!
-//! The statuses of the grippers have hundredths of an inch and pounds, as in the manual, which viewers cannot convert.
+//! Openings and forces of the grippers in SI units: `/instruments`, because viewers cannot convert.
 
 use std::io::{Seek, Write};
 
@@ -16,8 +14,7 @@ use crate::{
 
 pub const INSTRUMENTS: &str = "/instruments";
 
-/// A pound, newtons.
-const POUND: f64 = 4.448_221_615_260_5;
+const POUND: f64 = 4.448_221_615_260_5; // a pound, newtons
 
 messages! {
     /// Statuses of the grippers.

@@ -1,6 +1,4 @@
-//! The layout of byte images: the position of each field, the text of a value, and the version of the whole layout.
-//!
-//! [`rcs_core::reflect`] walks the schemas; a [`Leaf`] is one field that is kept.
+//! The layout of byte images: position of each field, text of a value, version. A [`Leaf`] is one field that is kept.
 
 use std::{fmt::Write as _, sync::LazyLock};
 
@@ -12,14 +10,11 @@ use rcs_core::{
     reflect::{self, Value},
 };
 
-/// A field without inner fields: its position in the image and its schema.
 #[derive(Clone, Debug)]
 pub struct Leaf {
-    /// Names from the outermost record inwards, joined by dots; array elements in brackets:
-    /// `prim.poses[2].pose.tool[0]`.
+    /// Names from the outermost record inwards: `prim.poses[2].pose.tool[0]`.
     pub path: String,
-    /// First byte in the image.
-    pub offset: usize,
+    pub offset: usize, // in the image
     /// Number of bytes in the image. For an option or a union with other leaves, only the first byte.
     pub size: usize,
     pub schema: &'static Schema,
@@ -40,15 +35,14 @@ impl Leaf {
         self.given.iter().all(|(at, byte)| image.get(*at) == Some(byte))
     }
 
-    /// The value in `image` as text.
     #[must_use]
     pub fn text(&self, image: &[u8]) -> String {
         let value = Value { schema: self.schema, bytes: self.bytes(image) };
         if self.is_in(image) { value.to_string() } else { reflect::NONE.to_owned() }
     }
 
-    /// True if the field is a record number of the task data. Added data change the numbers of later records but not
-    /// their meaning, so runs with different task data are compared without these fields, by names and results.
+    /// True for a record number of the task data. Added data change the numbers of later records but not their meaning,
+    /// so runs with different task data are compared without these fields.
     #[must_use]
     pub fn is_record_number(&self) -> bool {
         let number = match self.schema {
@@ -66,7 +60,6 @@ impl Leaf {
     }
 }
 
-/// Names of the fields that hold record numbers.
 const RECORD_NUMBERS: [&str; 14] = [
     "approach",
     "array",
@@ -84,7 +77,6 @@ const RECORD_NUMBERS: [&str; 14] = [
     "trajectory_parameters",
 ];
 
-/// All leaves of a record in the order of the image.
 #[must_use]
 pub fn leaves(record: &'static StructSchema) -> Vec<Leaf> {
     leaves_of(record.fields)
@@ -104,15 +96,13 @@ pub fn leaves_of(fields: &'static [FieldSchema]) -> Vec<Leaf> {
 /// A range of an image that changes as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece {
-    /// First byte in the image.
     pub offset: usize,
     pub size: usize,
     /// True for a number of at most eight bytes, which changes by a difference.
     pub number: bool,
 }
 
-/// The pieces of a record, which together contain each byte of its image once. The payloads of the variants of
-/// a union share the same bytes, so they are one piece.
+/// The pieces of a record. The payloads of a union's variants share the same bytes, so they are one piece.
 #[must_use]
 pub fn pieces(record: &'static StructSchema) -> Vec<Piece> {
     let mut found = Vec::new();
@@ -161,14 +151,12 @@ pub fn first_difference<'a>(leaves: &'a [Leaf], was: &[u8], is: &[u8]) -> Option
     leaves.iter().find(differ).or_else(|| leaves.iter().find(|leaf| leaf.bytes(was) != leaf.bytes(is)))
 }
 
-/// The layout of a record for readers and for the version: one line per leaf with its offset, size, kind and
-/// path, and one line per enum and union with its codes.
+/// The layout of a record for readers and for the version: one line per leaf, enum and union.
 #[must_use]
 pub fn describe(name: &str, record: &'static StructSchema) -> String {
     let mut lines = format!("{name}: {}, {} bytes\n", record.name, record.size());
     for leaf in leaves(record) {
         let kind = leaf.schema.to_string();
-        // Writing to a String cannot fail.
         let _ = writeln!(lines, "{:6} {:4} {kind:12} {}", leaf.offset, leaf.size, leaf.path);
     }
     let mut definitions: Vec<String> = Vec::new();
@@ -181,8 +169,7 @@ pub fn describe(name: &str, record: &'static StructSchema) -> String {
     lines + &definitions.concat()
 }
 
-/// Format of the images on `/replay`: see [`crate::delta`]. Logs of another format are refused like those of
-/// another layout.
+/// Format of the images on `/replay` ([`crate::delta`]). Logs of another format are refused.
 const FORMAT: &str = "format 2: differences by field\n";
 
 /// The layout of all images of a log: a text in each log, from which the version is computed.

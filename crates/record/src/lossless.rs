@@ -1,6 +1,6 @@
 //! The lossless channel, `/replay`: byte images of inputs and outputs of every tick, as differences.
 //!
-//! Its messages are kept until their second is over, and then get chunks of their own.
+//! Its messages are kept until their second is over.
 
 use std::io::{Seek, Write};
 
@@ -24,24 +24,17 @@ use crate::{
 /// Field numbers of the message on [`REPLAY`].
 pub mod replay_field {
     pub const TICK: u32 = 1;
-    /// Number of missing ticks before this one.
-    pub const GAP: u32 = 2;
-    /// True if the images are differences from zeros, not from the previous message.
-    pub const FULL: u32 = 3;
-    /// Inputs of the tick.
+    pub const GAP: u32 = 2; // missing ticks before this one
+    pub const FULL: u32 = 3; // differences from zeros, not from the previous message
     pub const EXTERNAL: u32 = 4;
-    /// Output buffers after the tick.
-    pub const MEMORY: u32 = 5;
+    pub const MEMORY: u32 = 5; // after the tick
     /// States of the processes after the tick, as a difference from zeros; not in every message.
     pub const STATE: u32 = 6;
-    /// Fingerprint of the simulated cell before the tick.
-    pub const WORLD: u32 = 7;
+    pub const WORLD: u32 = 7; // of the simulated cell, before the tick
     pub const CONTROLLER_NS: u32 = 8;
-    /// Number of slots of the 40 ms grid skipped so far.
     pub const SKIPPED: u32 = 9;
 }
 
-/// Codecs for the deltas of the images.
 pub(crate) struct Codecs {
     pub(crate) external: Codec,
     pub(crate) memory: Codec,
@@ -58,14 +51,12 @@ impl Codecs {
     }
 }
 
-/// The byte images of a tick.
 pub(crate) struct Images {
     pub(crate) external: Vec<u8>,
     pub(crate) memory: Vec<u8>,
 }
 
 impl Images {
-    /// Images in which every byte is 0.
     pub(crate) fn zeros() -> Self {
         Self { external: vec![0; ExternalInputs::SIZE], memory: vec![0; CommonMemory::SIZE] }
     }
@@ -73,8 +64,7 @@ impl Images {
 
 pub(crate) struct Lossless {
     channel: u16,
-    /// Messages of the present second.
-    second: Vec<(Tick, Vec<u8>)>,
+    second: Vec<(Tick, Vec<u8>)>, // messages of the present second
     codecs: Codecs,
     zeros: Images,
 }
@@ -85,8 +75,7 @@ impl Lossless {
         Ok(Self { channel, second: Vec::new(), codecs: Codecs::new(), zeros: Images::zeros() })
     }
 
-    /// Store the message of a tick with its images, `now`, as a difference from those of the previous tick,
-    /// `last`, or from zeros if it is `full`.
+    /// Store a tick as a difference from the previous tick, or from zeros if it is `full`.
     pub fn note<W: Write + Seek>(
         &mut self,
         output: &mut Output<W>,

@@ -24,14 +24,11 @@ const REFUSED: u32 = 4;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OperatorLine {
-    /// The first tick that reads the request.
-    pub tick: Tick,
+    pub tick: Tick, // the first one that reads the request
     pub source: String,
     pub line: String,
-    /// Text of the answer; may be empty.
-    pub answer: String,
-    /// Why the request was refused; `None` if it was accepted.
-    pub refused: Option<String>,
+    pub answer: String,          // may be empty
+    pub refused: Option<String>, // `None` if it was accepted
 }
 
 impl OperatorLine {
@@ -96,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_comes_back() {
+    fn operator_line_round_trips() {
         for refused in [None, Some(String::new()), Some("no".to_owned())] {
             let line = OperatorLine {
                 tick: Tick(7),

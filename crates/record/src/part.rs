@@ -9,29 +9,22 @@ use crate::{
     reader::Log,
 };
 
-/// The place of a log that does not have its whole run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Part {
-    /// The log begins after the first tick.
     #[error("the log begins at tick {begin}, not at the start of its run; {before}")]
     Later {
-        /// The first tick of the log.
-        begin: Tick,
-        /// The earlier logs of the run, as far as known.
-        before: Before,
+        begin: Tick,    // the first tick of the log
+        before: Before, // the earlier logs of the run, as far as known
     },
     /// The log has the first ticks, and the run continues in another log.
     #[error("the log ends at tick {end}, and its run continues in another log")]
     First {
-        /// The last tick of the log.
-        end: Tick,
+        end: Tick, // the last tick of the log
     },
 }
 
-/// The logs before a log of the same run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Before {
-    /// The first log of the run.
     #[error("the first log of the run is {}", .0.display())]
     First(PathBuf),
     #[error("the log before it, {}, is not there", .0.display())]
@@ -41,8 +34,7 @@ pub enum Before {
 }
 
 impl Log {
-    /// The place of this log in a run that wrote several logs; `None` if the log has its run from the first
-    /// tick to the end, or to the moment at which the program was killed.
+    /// The place of this log in a run that wrote several logs; `None` if it has its run from the first tick on.
     #[must_use]
     pub fn part(&self) -> Option<Part> {
         let begin = self.first_tick()?;
@@ -58,7 +50,6 @@ impl Log {
         self.messages(REPLAY).next().map(|(tick, _)| tick)
     }
 
-    /// Path of the previous log, in the same directory.
     fn earlier(&self) -> Option<PathBuf> {
         let name = self.lines().find_map(|line| line.text.strip_prefix(EARLIER).map(str::to_owned))?;
         // A name in a log must not lead out of the directory.

@@ -1,16 +1,12 @@
 //! Splits a log file, which may be damaged, into pieces.
 //!
-//! Every length in the file is checked against the size of the file before use. An unreadable piece ends at the next
-//! readable record: a chunk or an attachment with the right checksum, or metadata of this program. The total of
-//! decompressed bytes, and with it memory and time of reading, is limited in proportion to the size of the file.
+//! Every length is checked against the size of the file before use. An unreadable piece ends at the next readable
+//! record with the right checksum. The total of decompressed bytes, and with it memory and time, is limited. Logs that
+//! other programs have rewritten are also read; damage in a part without a checksum may remain undetected.
 //!
-//! Logs that other programs have rewritten are also read: with other compressions, without chunks, or without
-//! checksums. Damage in a part without a checksum may remain undetected.
-//!
-//! A whole file has at its end the right checksums of all its chunks and of the index after them. Its chunks are then
-//! decompressed only when read, and the index lists the chunks with messages of a channel. Otherwise each chunk must
-//! prove by its own checksum that it is readable. All processors check the first chunks ahead. The decompressed data
-//! are not kept: decompressing them again is as fast as fetching them from memory outside the caches.
+//! A whole file has at its end the right checksums; its chunks are then decompressed only when read. Otherwise each
+//! chunk must prove by its own checksum that it is readable; all processors check the first chunks ahead. Decompressed
+//! data are not kept: decompressing them again is as fast as fetching them from memory.
 
 use std::{collections::BTreeMap, io::Read as _, iter, ops::Range, thread};
 
@@ -23,70 +19,52 @@ use zstd::bulk::Decompressor;
 
 use crate::names::{END, RUN};
 
-/// Size of a record's header, bytes: operation code and length.
-const HEAD: usize = 9;
-/// Largest decompressed size of a chunk, bytes. The recorder closes a chunk at a quarter of a megabyte; other
-/// programs write chunks of some tens of megabytes.
+const HEAD: usize = 9; // size of a record's header, bytes: operation code and length
+/// Largest decompressed size of a chunk, bytes: other programs write chunks of some tens of megabytes.
 const CHUNK: u64 = 64 << 20;
-/// Messages outside chunks are read in parts of about this size, bytes.
-const LOOSE: usize = 1 << 18;
+const LOOSE: usize = 1 << 18; // messages outside chunks are read in parts of about this size, bytes
 /// Largest ratio of decompressed bytes to bytes of the file: the recorder's chunks have a ratio of two to eleven.
 const EXPANSION: u64 = 64;
-/// Limit of decompressed bytes for small files.
-const LEAST: u64 = 64 << 20;
-/// Limit of decompressed bytes that are checked ahead: those of a quarter of an hour. It bounds the memory for channels
-/// and schemas.
+const LEAST: u64 = 64 << 20; // limit of decompressed bytes for small files
+/// Limit of bytes that are checked ahead, of a quarter of an hour. It bounds the memory for channels and schemas.
 const AHEAD: u64 = 64 << 20;
-/// Size of the body of the last record, bytes.
-const FOOTER: usize = 20;
-/// Size of a checksum, bytes.
-const CHECKSUM: usize = 4;
+const FOOTER: usize = 20; // size of the body of the last record, bytes
+const CHECKSUM: usize = 4; // bytes
 /// Size of the data before those of a message, bytes: channel, number, and two times.
 const MESSAGE_HEAD: usize = 22;
 
-/// Why a part of the file is unreadable.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
-    /// Its bytes are not a record, or have a wrong checksum.
     #[error("damaged")]
     Bytes,
-    /// A chunk in a compression that this program does not have.
     #[error("compressed with {0:?}, and only zstd, lz4 or no compression can be read")]
     Compression(String),
-    /// A chunk that is too large.
     #[error("a chunk of {0} bytes, and only chunks of at most {CHUNK} bytes can be read")]
     TooLarge(u64),
 }
 
 pub enum Piece<'a> {
     Record(Record<'a>),
-    /// A chunk, including its record header, with its channels and schemas. A whole file has these after its
-    /// data too, so its chunks are not decompressed here.
+    /// A chunk with its channels and schemas, which a whole file has after its data too.
     Chunk(Range<usize>, Vec<Record<'static>>),
     Loose(Range<usize>),
     /// The previous chunk has messages of this channel.
     Index(u16),
-    /// Unreadable bytes.
     Damaged(Range<usize>, Damage),
 }
 
-/// The pieces of a file, in order.
 pub struct Pieces<'a> {
     bytes: &'a [u8],
     is_whole: bool,
     at: usize,
-    /// Number of bytes that may still be decompressed or checksummed.
-    left: u64,
+    left: u64, // number of bytes that may still be decompressed or checksummed
     decoder: Decoder,
     /// Channels and schemas of the chunks that were checked ahead, by their positions; `None` for an unreadable one.
     ahead: BTreeMap<usize, Option<Vec<Record<'static>>>>,
 }
 
 impl<'a> Pieces<'a> {
-    /// The pieces of a file that begins with the magic of MCAP.
-    ///
-    /// # Errors
-    /// [`McapError::BadMagic`] for another beginning.
+    /// The pieces of a file. Fails with [`McapError::BadMagic`] for another beginning than that of MCAP.
     pub fn new(bytes: &'a [u8]) -> McapResult<Self> {
         if !bytes.starts_with(MAGIC) {
             return Err(McapError::BadMagic);
@@ -184,7 +162,6 @@ impl<'a> Iterator for Pieces<'a> {
     }
 }
 
-/// The end of a row of messages outside chunks.
 fn loose_end(bytes: &[u8], from: usize) -> usize {
     let is_message = |(_, opcode, _): &(usize, u8, usize)| *opcode == op::MESSAGE;
     let row =
@@ -195,7 +172,6 @@ fn loose_end(bytes: &[u8], from: usize) -> usize {
 /// Why a whole chunk is unreadable, and its end; `None` if no chunk begins there, or its head is damaged.
 fn unreadable(bytes: &[u8], at: usize) -> Option<(Damage, usize)> {
     let (opcode, end) = frame(bytes, at).filter(|(opcode, _)| *opcode == op::CHUNK)?;
-    // A damaged length of a chunk must not hide what follows it.
     frame(bytes, end)
         .filter(|(next, _)| (op::HEADER..=op::DATA_END).contains(next) && opcode == op::CHUNK)?;
     match Packed::of(bytes.get(at..end)?) {
@@ -204,8 +180,7 @@ fn unreadable(bytes: &[u8], at: usize) -> Option<(Damage, usize)> {
     }
 }
 
-/// True if the file ends with the right checksums of its data and of its summary, which has its channels and
-/// schemas; `None` without such an end.
+/// True if the file ends with the right checksums of its data and of its summary; `None` without such an end.
 fn is_whole(bytes: &[u8]) -> Option<bool> {
     // Footer: beginning of the summary, beginning of its offsets, checksum of the summary and of the footer up to here.
     let footer = bytes.len().checked_sub(HEAD + FOOTER + MAGIC.len())?;
@@ -258,7 +233,6 @@ fn ahead(bytes: &[u8]) -> BTreeMap<usize, Option<Vec<Record<'static>>>> {
     })
 }
 
-/// Decompressed size of a chunk according to its record header.
 fn chunk_size(chunk: &[u8]) -> Option<u64> {
     chunk.get(HEAD..)?.get(16..24)?.try_into().map(u64::from_le_bytes).ok()
 }
@@ -282,10 +256,8 @@ fn described(records: &[u8]) -> Option<Vec<Record<'static>>> {
 #[derive(Clone, Copy)]
 pub struct Message<'a> {
     pub channel: u16,
-    /// Its number in the channel: the tick.
     pub sequence: u32,
-    /// Time of the log, nanoseconds since 1970.
-    pub log_time: u64,
+    pub log_time: u64, // ns since 1970
     pub data: &'a [u8],
 }
 
@@ -305,7 +277,6 @@ pub fn chunk_begin(chunk: &[u8]) -> Option<u64> {
     chunk.get(HEAD..)?.first_chunk().map(|begin| u64::from_le_bytes(*begin))
 }
 
-/// The messages among the records of a readable chunk.
 pub fn messages(records: &[u8]) -> impl Iterator<Item = Message<'_>> {
     let mut at = 0;
     iter::from_fn(move || {
@@ -338,8 +309,7 @@ fn frames(bytes: &[u8], from: usize) -> impl Iterator<Item = (usize, u8, usize)>
     })
 }
 
-/// Parse a record of a used kind; keep only the bytes of others. The library allocates memory for a text before
-/// it checks the length, so the lengths are checked here.
+/// Parse a record of a used kind. The library allocates before it checks a length, so lengths are checked here.
 fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     match opcode {
         op::METADATA => texts(body, text(body, 0)?)?,
@@ -355,7 +325,6 @@ fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     parse_record(opcode, body).ok()
 }
 
-/// End of a text that begins with its length.
 fn text(body: &[u8], from: usize) -> Option<usize> {
     let begin = from.checked_add(4)?;
     let length = body.get(from..begin)?.try_into().map(u32::from_le_bytes).ok()?;
@@ -374,8 +343,7 @@ fn texts(body: &[u8], from: usize) -> Option<usize> {
 
 struct Packed<'a> {
     size: usize,
-    /// Checksum of the records; 0 for none.
-    checksum: u32,
+    checksum: u32, // checksum of the records; 0 for none
     compression: Compression,
     records: &'a [u8],
 }
@@ -412,7 +380,6 @@ impl<'a> Packed<'a> {
     }
 }
 
-/// Decompresses chunks, one after the other, into the same memory.
 #[derive(Default)]
 pub struct Decoder {
     zstd: Decompressor<'static>,
@@ -420,9 +387,7 @@ pub struct Decoder {
 }
 
 impl Decoder {
-    /// The records of a chunk with its record header.
-    ///
-    /// `None` if the chunk cannot be decompressed, or its checksum is wrong.
+    /// The records of a chunk; `None` if it cannot be decompressed, or its checksum is wrong.
     pub fn unpack<'a>(&'a mut self, chunk: &'a [u8]) -> Option<&'a [u8]> {
         let Packed { size, checksum, compression, mut records } = Packed::of(chunk).ok()?;
         self.records.clear();

@@ -1,9 +1,7 @@
 //! Reads a log, which may be incomplete or damaged.
 //!
-//! A killed program leaves a file without an end, possibly with an incomplete record, and a file can be damaged
-//! anywhere. All readable data are read ([`crate::pieces`]). Images are differences, so after a damaged chunk
-//! the ticks continue with the next whole images, which the recorder writes once per second. Missing parts are
-//! reported, but are not an error.
+//! All readable data of a killed or damaged log are read ([`crate::pieces`]). Images are differences, so after damage
+//! the ticks continue with the next whole images, once per second. Missing parts are reported, but are not an error.
 
 use std::{
     borrow::Borrow,
@@ -38,27 +36,22 @@ use crate::{
     writer::Timing,
 };
 
-/// Size of the magic of an MCAP file, bytes.
-const HEAD: u64 = 8;
+const HEAD: u64 = 8; // size of the magic of an MCAP file, bytes
 
 pub struct Log {
     path: PathBuf,
     bytes: Vec<u8>,
     segments: Vec<Segment>,
     channels: BTreeMap<String, u16>,
-    /// Channels and schemas of the file, by number.
-    described: Described,
-    /// Metadata of the start: facts of the run.
-    pub run: BTreeMap<String, String>,
+    described: Described,              // channels and schemas of the file, by number
+    pub run: BTreeMap<String, String>, // facts of the run, from its start
     /// Metadata of the end: the ending of the run; `None` if the program was killed.
     pub end: Option<BTreeMap<String, String>>,
-    /// Files attached to the log, in order.
-    pub attachments: Vec<Attachment>,
+    pub attachments: Vec<Attachment>, // in order
     /// True if the file has its end. Otherwise up to the last second of the run is missing.
     pub complete: bool,
 }
 
-/// A part of the file with messages.
 enum Segment {
     /// A chunk with the channels of its messages; an empty list if they are uncertain.
     Chunk(Range<usize>, Vec<u16>),
@@ -66,22 +59,15 @@ enum Segment {
     Damaged(Range<usize>, Damage),
 }
 
-/// A recorded tick.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoggedTick {
     pub tick: Tick,
-    /// Number of missing ticks before it.
-    pub gap: u64,
-    /// Byte image of [`interfaces::ExternalInputs`].
-    pub external: Vec<u8>,
-    /// Byte image of [`interfaces::CommonMemory`] after the tick.
-    pub memory: Vec<u8>,
-    /// Byte image of [`levels::ladder::LadderState`] after the tick, if recorded.
-    pub state: Option<Vec<u8>>,
-    /// Digest of the simulated cell before the tick, if recorded.
-    pub world: Option<u64>,
-    /// Times of the tick, if recorded.
-    pub timing: Option<Timing>,
+    pub gap: u64,               // missing ticks before it
+    pub external: Vec<u8>,      // of [`interfaces::ExternalInputs`]
+    pub memory: Vec<u8>,        // of [`interfaces::CommonMemory`], after the tick
+    pub state: Option<Vec<u8>>, // of [`levels::ladder::LadderState`], if recorded
+    pub world: Option<u64>,     // digest before the tick, if recorded
+    pub timing: Option<Timing>, // if recorded
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -95,10 +81,7 @@ pub struct LogLine {
 }
 
 impl Log {
-    /// Read a log, which may be incomplete or damaged.
-    ///
-    /// # Errors
-    /// [`ReadError`] if the file is not a log. The layout is not checked: see [`Log::check_layout`].
+    /// Read a log, which may be incomplete or damaged; its layout is not checked ([`Log::check_layout`]).
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let unreadable = |source| ReadError::Unreadable { path: path.to_owned(), source };
         let mut file = files::open(path).map_err(unreadable)?;
@@ -111,10 +94,7 @@ impl Log {
         Self::from_bytes(path, bytes)
     }
 
-    /// A log from the bytes of a file; `path` names it in errors.
-    ///
-    /// # Errors
-    /// The errors of [`Log::open`].
+    /// A log from the bytes of a file; `path` names it in errors. Errors are those of [`Log::open`].
     pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, ReadError> {
         let mut log = Self {
             path: path.to_owned(),
@@ -157,7 +137,6 @@ impl Log {
                     log.attachments.push(Attachment { name, media_type, data: data.into_owned() });
                 }
                 Piece::Record(Record::Footer(_)) => log.complete = true,
-                // The channels are repeated after the data.
                 Piece::Record(record) => log.note(&record),
             }
         }
@@ -206,16 +185,12 @@ impl Log {
         })
     }
 
-    /// Size of the file, bytes.
     #[must_use]
     pub fn size(&self) -> usize {
         self.bytes.len()
     }
 
     /// Check that the byte images have the layout of this program.
-    ///
-    /// # Errors
-    /// [`ReadError::OtherLayout`].
     pub fn check_layout(&self) -> Result<(), ReadError> {
         let expected = layout::version();
         let found = self.run.get(LAYOUT).cloned().unwrap_or_default();
@@ -261,7 +236,6 @@ impl Log {
         Ticks { items: self.items(REPLAY, first), codecs, last, has_base: first == 0 }
     }
 
-    /// The lines on `/log`, in order.
     pub fn lines(&self) -> impl Iterator<Item = LogLine> {
         self.messages(LOG_TOPIC).map(|(tick, data)| {
             let (source, text, code) = Default::default();
@@ -279,7 +253,6 @@ impl Log {
         })
     }
 
-    /// Requests of operators, in order.
     pub fn operator_lines(&self) -> impl Iterator<Item = OperatorLine> {
         self.messages(OPERATOR).map(|(tick, data)| OperatorLine::decode(tick, &data))
     }
@@ -311,8 +284,7 @@ impl Log {
         self.described.tell(tap);
     }
 
-    /// Pass all messages to a tap, in the order of their times. `before` receives the time of each message
-    /// before it is passed, nanoseconds since 1970, and may wait.
+    /// Pass all messages to a tap, by time. `before` receives the time of each, ns since 1970, and may wait.
     pub fn play(&self, tap: &mut dyn Tap, mut before: impl FnMut(u64)) {
         let mut decoder = Decoder::default();
         let mut waiting: Vec<(u64, u16, Vec<u8>)> = Vec::new();
@@ -339,13 +311,12 @@ impl Log {
         times
     }
 
-    /// The messages of a topic with their ticks.
     pub fn messages(&self, topic: &str) -> impl Iterator<Item = (Tick, Vec<u8>)> {
         self.items(topic, 0).filter_map(|(_, message)| message)
     }
 
-    /// The messages of a topic from a part of the file on, with their ticks, and `None` at damage; each with
-    /// the number of its part.
+    /// The messages of a topic from a part on, with their ticks, and `None` at damage; each with the number of its
+    /// part.
     fn items(&self, topic: &str, first: usize) -> impl Iterator<Item = Item> + use<'_> {
         let id = self.channels.get(topic).copied();
         let mut decoder = Decoder::default();
@@ -381,7 +352,6 @@ impl Log {
         Some(pieces::messages(records))
     }
 
-    /// The time of the first message of a part, nanoseconds since 1970.
     fn begin(&self, segment: &Segment) -> Option<u64> {
         match segment {
             Segment::Chunk(range, _) => pieces::chunk_begin(self.bytes.get(range.clone())?),
@@ -396,13 +366,11 @@ impl Log {
 /// A message with its tick, or `None` at damage, and the number of its part of the file.
 type Item = (usize, Option<(Tick, Vec<u8>)>);
 
-/// Reads the recorded ticks of a log.
 pub(crate) struct Ticks<C, I> {
     items: I,
     codecs: C,
     last: LoggedTick,
-    /// True if the last tick can be the base of the next message's differences.
-    has_base: bool,
+    has_base: bool, // true if the last tick can be the base of the next message's differences
 }
 
 impl<C: Borrow<Codecs>, I: Iterator<Item = Item>> Ticks<C, I> {

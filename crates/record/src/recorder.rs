@@ -1,14 +1,9 @@
 //! The run's side of the log: a bounded ring buffer, and a thread that writes its entries into the file.
 //!
-//! In a tick the recorder copies three records into memory that was allocated before the first tick. It does
-//! not allocate, and in a real-time run it never waits: if the ring is full, the tick is counted as lost, and
-//! the next recorded tick has the count. In a run in fast clock the recorder waits instead, and loses no tick.
-//!
-//! The writer thread ends at the first error. The ring then has no reader, and every call of the recorder
-//! returns at once. [`Recorder::finish`] returns the error: a full disk ends the log, never the run.
-//!
-//! Start a recorder before the thread of the ticks gets its real-time priority, because the writer inherits the
-//! priority of the calling thread.
+//! In a tick the recorder copies three records into memory that was allocated before the first tick. In a real-time run
+//! it never waits: if the ring is full, the tick is counted as lost. In fast clock it waits instead. The writer thread
+//! ends at the first error, which [`Recorder::finish`] returns: a full disk ends the log, never the run. Start a
+//! recorder before the real-time requests, because the writer inherits the priority.
 
 use std::{
     path::{Path, PathBuf},
@@ -35,23 +30,16 @@ use crate::{
     writer::{FULL_SET, LogWriter, TickRecord, Timing, Written},
 };
 
-/// Capacity of the ring, ticks: 40 s of real time. In fast clock, while the cell is at rest, the writer takes
-/// longer for a tick than the run; a run that has to wait for the writer continues with cold caches.
+/// Ticks: 40 s of real time. While the cell is at rest, the writer takes longer for a tick than a run in fast clock.
 const RING: usize = 1024;
-/// Capacity of the ring of states, which are written once per second.
-const STATE_RING: usize = 64;
-/// Capacity of the ring of notes.
+const STATE_RING: usize = 64; // capacity of the ring of states, which are written once per second
 const NOTE_RING: usize = 1024;
-/// Sleep of a run in fast clock when the ring is full.
-const FULL: Duration = Duration::from_micros(100);
-/// Capacity of the ring of files.
+const FULL: Duration = Duration::from_micros(100); // sleep of a run in fast clock when the ring is full
 const FILE_RING: usize = 64;
 /// Capacity of the ring of camera pictures, lists of contacts and states of the run: on average one per tick.
 const SHOWN_RING: usize = RING;
-/// Capacity of the ring of operators' lines.
-const OPERATOR_RING: usize = 256;
+const OPERATOR_RING: usize = 256; // capacity of the ring of operators' lines
 
-/// Behaviour when the ring is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// For runs in fast clock: the run waits.
@@ -71,7 +59,6 @@ fn clipped<const N: usize>(text: &str) -> [u8; N] {
     bytes
 }
 
-/// The run's end of the rings.
 pub struct Recorder {
     ticks: Producer<TickRecord>,
     states: Producer<(Tick, LadderState)>,
@@ -93,29 +80,21 @@ pub struct Recorder {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Summary {
     pub path: PathBuf,
-    /// Number of ticks in the file.
-    pub ticks: u64,
+    pub ticks: u64, // in the file
     pub lost: Lost,
-    /// Size of the file, bytes.
-    pub bytes: u64,
+    pub bytes: u64, // size of the file, bytes
     /// Number of logs of this run that ended earlier because of their size.
     pub earlier: usize,
 }
 
 impl Recorder {
     /// Claim a file, creating its directory if necessary, and start the writer.
-    ///
-    /// # Errors
-    /// The errors of [`LogFile::claim`] and [`Recorder::start_in`].
     pub fn start(path: &Path, pace: Pace, setup: Setup) -> Result<Self, RecordError> {
         Self::start_in(LogFile::claim(path)?, pace, setup, None, None)
     }
 
-    /// Empty the file and start the writer. A tap receives the same messages as the file. With a limit, the run
-    /// writes several logs one after the other.
-    ///
-    /// # Errors
-    /// [`RecordError`] if the file cannot be emptied, or its header cannot be written.
+    /// Empty the file and start the writer. A tap receives the same messages as the file. With a limit, the run writes
+    /// several logs, one after the other.
     pub fn start_in(
         mut file: LogFile,
         pace: Pace,
@@ -186,10 +165,8 @@ impl Recorder {
         }
     }
 
-    /// Record a line for `/log` about an event. Call it before [`Recorder::tick`] of the same tick.
-    ///
-    /// The writer reads a note only when it reaches the note's tick. This call must therefore not wait for
-    /// room: it could wait forever.
+    /// Record a line for `/log`, before [`Recorder::tick`] of the same tick. It must not wait for room: the writer
+    /// reads a note only when it reaches the note's tick.
     pub fn note(&mut self, tick: Tick, level: Level, source: &str, code: &'static str, text: &str) {
         let note = Note { tick, level, source: clipped(source), code, text: clipped(text) };
         if !has_room(&self.notes, Pace::Drop) || self.notes.push(note).is_err() {
@@ -197,8 +174,7 @@ impl Recorder {
         }
     }
 
-    /// Record a file of the run, such as a reload of task data. Call it before [`Recorder::tick`] of the tick
-    /// from which it is valid. The caller allocates the file outside the tick.
+    /// Record a file of the run, before [`Recorder::tick`] of the tick from which it is valid.
     pub fn attach(&mut self, tick: Tick, attachment: Attachment) {
         if !has_room(&self.files, self.pace) || self.files.push((tick, attachment)).is_err() {
             self.lost.files += 1;
@@ -212,22 +188,19 @@ impl Recorder {
         }
     }
 
-    /// Record an operator's request. Call it before [`Recorder::tick`] of the first tick with its effect. The
-    /// caller allocates the text outside the tick.
+    /// Record an operator's request, before [`Recorder::tick`] of the first tick with its effect.
     pub fn operator(&mut self, line: OperatorLine) {
         if !has_room(&self.operators, Pace::Drop) || self.operators.push(line).is_err() {
             self.lost.operators += 1;
         }
     }
 
-    /// Record times of the tick. Call it before [`Recorder::tick`] of the same tick. A run that never calls
-    /// this writes the same bytes each time.
+    /// Record times of the tick, before [`Recorder::tick`]. A run without them writes the same bytes each time.
     pub const fn timing(&mut self, timing: Timing) {
         self.timing = Some(timing);
     }
 
-    /// Record inputs and outputs of the processes in a tick. `state` is called for their states in the first
-    /// tick, once per second, and after a gap.
+    /// Record a tick. `state` is called in the first tick, once per second, and after a gap.
     pub fn tick(
         &mut self,
         tick: Tick,
@@ -260,17 +233,13 @@ impl Recorder {
         self.lost
     }
 
-    /// Number of ticks in the ring that the writer has not read. More than a few mean that the system does not
-    /// schedule the writer.
+    /// Ticks in the ring. More than a few mean that the system does not schedule the writer.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.ticks.buffer().capacity() - self.ticks.slots()
     }
 
-    /// Wait until everything is written, and end the log.
-    ///
-    /// # Errors
-    /// The error that ended the log before the end of the run.
+    /// Wait until everything is written, and end the log. Errors: the error that ended the log before the run.
     pub fn finish(self, end: End) -> Result<Summary, RecordError> {
         let Self {
             ticks, states, cells, notes, files, operators, shown, lost, path, end: slot, thread, ..

@@ -1,8 +1,7 @@
 //! The text lines on `/log`, derived from the differences between two ticks.
 //!
-//! They report commands of the ladder, the status of the job, sensor events of the robot (a condition of a guarded
-//! move, a part, a gripper), faults of the link, and each failure as one sentence: process, reason, and row of the
-//! decision table.
+//! They report commands, the status of the job, sensor events, faults of the link, and each failure as one sentence:
+//! process, reason, and row of the table.
 
 use interfaces::{
     CommonMemory, Detail, Fault, Header, ProcessId,
@@ -16,20 +15,16 @@ use rcs_core::handshake::Lower;
 
 use crate::{channels::HeaderPlace, proto::foxglove::Level};
 
-/// A line on `/log`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Remark {
     pub level: Level,
-    /// Its source: a process, the cell, the recorder.
-    pub source: String,
+    pub source: String, // a process, the cell, the recorder
     pub text: String,
     /// Source file of the decision table, or the code of an event such as `cell.dropped`; empty without both.
     pub file: &'static str,
-    /// Line of the decision table in the source file, or 0.
-    pub line: u32,
+    pub line: u32, // of the decision table in its file, or 0
 }
 
-/// The remarks about two successive ticks.
 #[must_use]
 pub fn remarks(
     headers: &[HeaderPlace],
@@ -71,8 +66,7 @@ fn commands(
     down(before, after, say);
 }
 
-/// Sensor events of the robot: the condition of a guarded move, an object between the fingers, a gripper, the operator
-/// at the joystick box.
+/// Sensor events: the condition of a guarded move, an object, a gripper, the operator at the joystick box.
 fn encounters(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, said: &mut Vec<Remark>) {
     let mut say = |field: &str, text: String| {
         said.push(Remark { source: name_of(headers, field), text, ..Remark::default() });
@@ -100,15 +94,13 @@ fn encounters(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemo
     }
 }
 
-/// True if Prim has ordered T3I to restart the link, and T3I has not yet read the order. Faults of the link are
-/// then expected.
+/// True if T3I has not yet read Prim's order to restart the link, during which faults are expected.
 #[must_use]
 pub fn is_restart_ordered(before: &CommonMemory) -> bool {
     let command = &before.prim.t3i;
     command.command == T3iVerb::Restart && command.number != before.t3i.status.echo
 }
 
-/// Faults of the link to the robot.
 fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, said: &mut Vec<Remark>) {
     let mut say = |level, text: String| {
         said.push(Remark { level, source: name_of(headers, "t3i"), text, ..Remark::default() });
@@ -149,8 +141,7 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
 /// The processes whose commands show the progress of the job; commands of the others are details.
 const FOLLOWED: [ProcessId; 3] = [ProcessId::Subtask, ProcessId::Emove, ProcessId::Pedestal];
 
-/// A command on its way down the ladder: `-> E-move: GRASP-OBJ LINKBAR1 at PFIXTURE`. Points to T3I are
-/// skipped: there is one per tick.
+/// A command on its way down: `-> E-move: GRASP-OBJ LINKBAR1 at PFIXTURE`, except the points to T3I.
 fn down(before: &CommonMemory, after: &CommonMemory, mut say: impl FnMut(Level, &str, String)) {
     for process in ProcessId::ALL.iter().copied().filter(|process| *process != ProcessId::T3i) {
         let Some(commander) = process.commander() else { continue };
@@ -173,8 +164,7 @@ fn failures(
     for process in ProcessId::ALL.iter().copied() {
         let (was, is) = (before.said(process).fault, after.said(process).fault);
         if is != was && !is.is_none() {
-            // T3I recovers from many faults of the link itself; Prim reports the others as errors. A fault
-            // during PAUSE is reported together with `done`.
+            // T3I recovers from many faults of the link itself. A fault during PAUSE is reported together with `done`.
             let failed = after.said(process).lower == Lower::Error && !matches!(is, Fault::Link(_));
             let level = if failed { Level::Error } else { Level::Warning };
             let reason = format!("{}{}", is.text(), Detail::of(process, is, hws, after));
@@ -198,7 +188,6 @@ fn failure(headers: &[HeaderPlace], field: &str, header: &Header, level: Level, 
     }
 }
 
-/// A change of the held object, as text.
 fn holding(was: &Holding, is: &Holding) -> Option<String> {
     match (was, is) {
         _ if was == is => None,
@@ -229,7 +218,7 @@ mod tests {
     use rcs_core::name::Name16;
 
     #[test]
-    fn a_command_is_told_once() {
+    fn command_is_reported_once() {
         let mut hws = HwsCommand { number: 1, source_sector: Some(1), ..HwsCommand::default() };
         hws.command = Name16::new("TRANSFER").unwrap();
         hws.object = Name16::new("LINKBAR1").ok();
@@ -245,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn every_step_down_is_told() {
+    fn commands_of_each_level_are_reported() {
         let before = CommonMemory::default();
         let mut after = before;
         after.emove.v_grip.number = 7;

@@ -1,14 +1,11 @@
 //! Replay: executes the control processes again with the recorded inputs, and compares the outputs.
 //!
-//! The task data are those of the log's attachments, the inputs those of its ticks. Every output buffer of
-//! every tick is compared bit for bit, and so are the states of the processes where the log has them. The first
-//! difference ends the comparison, because it causes later differences.
+//! Task data and inputs are those of the log. Every output buffer of every tick is compared bit for bit, like the
+//! states where the log has them, up to the first difference.
 //!
-//! Missing ticks cannot be computed; the replay continues with the states recorded with the first tick after
-//! the gap. Likewise, a replay can begin in the middle: states are recorded once per second. All processors
-//! therefore replay, each another stretch of the log. A stretch begins with recorded states and ends with those
-//! with which the next one begins; they are compared like all others. A replay with other task data shows their
-//! effect; it does not compare record numbers.
+//! After a gap, or from the middle, the replay continues with recorded states. All processors therefore replay, each
+//! another stretch, which begins and ends with recorded states. A replay with other task data does not compare record
+//! numbers.
 
 use std::{
     collections::BTreeMap,
@@ -42,7 +39,6 @@ pub use crate::comparison::Difference;
 /// Parts of a log that a processor replays at once: eight seconds, of two parts each.
 const STRETCH: usize = 16;
 
-/// The part of a log to replay, and the task data.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Task data instead of those in the log. Blocks that were loaded during the run are added to them.
@@ -65,15 +61,11 @@ pub struct ReplayReport {
     pub ticks: u64,
     /// Number of ticks that could not be computed: those in gaps, and those from which the replay continued.
     pub skipped: u64,
-    /// The first difference, if any.
     pub first_difference: Option<Difference>,
-    /// Digest of the output buffers of the computed ticks.
-    pub digest: Digest,
+    pub digest: Digest, // of the computed ticks
     /// Digest at the end of the run; `None` if the log is incomplete.
     pub recorded_digest: Option<u64>,
-    /// True if the log has its end.
     pub complete: bool,
-    /// The damaged parts of the log, as text.
     pub damage: Option<String>,
     pub elapsed: Duration,
 }
@@ -94,19 +86,12 @@ impl ReplayReport {
     }
 }
 
-/// Replay a whole log with its own task data.
-///
-/// # Errors
-/// [`ReplayError`] if the log is unreadable, has another layout, or its task data do not load. A difference is
-/// not an error, but part of the report.
+/// Replay a whole log with its own task data. A difference is part of the report.
 pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
     replay_with(path, &Options::default())
 }
 
-/// Replay a log, or a part of it.
-///
-/// # Errors
-/// The errors of [`replay`]; [`ReplayError::Empty`] if the part contains no tick.
+/// Replay a log, or a part of it. [`ReplayError::Empty`] if the part contains no tick.
 pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, ReplayError> {
     let started = Instant::now();
     // It takes half as long as reading a log, and is made in parallel; without a thread it is made later.
@@ -137,10 +122,7 @@ pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, Repla
     })
 }
 
-/// The task data attached to a log.
-///
-/// # Errors
-/// [`ReplayError::TaskData`] with the report of the loader.
+/// The task data attached to a log. Fails with [`ReplayError::TaskData`] with the report of the loader.
 pub fn task_data(log: &Log) -> Result<Store, ReplayError> {
     let (store, _) = Store::from_sources(log_sources(&log.attachments))
         .map_err(|report| ReplayError::TaskData(report.render(false)))?;
@@ -156,14 +138,10 @@ pub(crate) fn log_sources(attachments: &[Attachment]) -> Vec<Source> {
 }
 
 /// The generations of a log's task data: as loaded, and after each reload.
-///
-/// # Errors
-/// [`ReplayError::TaskData`] with the report of the loader.
 pub fn generations(log: &Log) -> Result<Vec<Store>, ReplayError> {
     generations_of(log_sources(&log.attachments), &log.attachments)
 }
 
-/// The generations of task data after each reload among the attachments.
 pub(crate) fn generations_of(
     sources: Vec<Source>,
     attachments: &[Attachment],
@@ -173,7 +151,6 @@ pub(crate) fn generations_of(
     grown(first, attachments)
 }
 
-/// A store, and the stores after each reload among the attachments.
 pub(crate) fn grown(first: Store, attachments: &[Attachment]) -> Result<Vec<Store>, ReplayError> {
     let mut generations = vec![first];
     let mut reloads: BTreeMap<u32, Vec<Source>> = BTreeMap::new();
@@ -189,7 +166,6 @@ pub(crate) fn grown(first: Store, attachments: &[Attachment]) -> Result<Vec<Stor
     Ok(generations)
 }
 
-/// Result of a replay up to the first difference.
 #[derive(Debug, PartialEq)]
 struct Replayed {
     ticks: u64,
@@ -198,24 +174,20 @@ struct Replayed {
     first_difference: Option<Difference>,
 }
 
-/// Result of the replay of a stretch.
 #[derive(Default)]
 struct Stretch {
-    /// Hashes of the output buffers of the computed ticks.
-    hashes: Vec<u64>,
+    hashes: Vec<u64>, // hashes of the output buffers of the computed ticks
     skipped: u64,
     first_difference: Option<Difference>,
 }
 
-/// A log that is replayed in stretches.
 struct Stretches<'a> {
     log: &'a Log,
     options: &'a Options,
     generations: &'a [Store],
     codecs: Codecs,
     comparison: Comparison,
-    /// Parts of the log in a stretch.
-    length: usize,
+    length: usize, // parts of the log in a stretch
 }
 
 impl<'a> Stretches<'a> {
@@ -224,7 +196,6 @@ impl<'a> Stretches<'a> {
         Self { log, options, generations, codecs: Codecs::new(), comparison, length }
     }
 
-    /// Replay all stretches up to the first difference, or the first tick that cannot be computed.
     fn replay(&self) -> Result<Replayed, ReplayError> {
         let mut all = Replayed { ticks: 0, skipped: 0, digest: Digest::new(), first_difference: None };
         for stretch in self.in_all_processors() {
@@ -256,8 +227,8 @@ impl<'a> Stretches<'a> {
         stretches.into_iter().map_while(|stretch| stretch)
     }
 
-    /// Compute the ticks of a stretch up to the first difference. It extends from the first recorded states in
-    /// its parts of the file to the first ones after them; the first stretch begins with the run.
+    /// Compute a stretch up to the first difference: from the first recorded states in its parts to the first ones
+    /// after.
     fn stretch(&self, number: usize) -> Result<Stretch, ReplayError> {
         let first = number.saturating_mul(self.length);
         let end = first.saturating_add(self.length);
@@ -295,23 +266,18 @@ impl<'a> Stretches<'a> {
     }
 }
 
-/// Computes recorded ticks again, and compares them.
 struct Replayer {
     ladder: Ladder,
     /// Common memory after the last two ticks. The next tick overwrites the older one.
     halves: [CommonMemory; 2],
-    /// True if the last tick is in the second half.
-    in_second: bool,
-    /// Byte image of common memory after the last tick.
-    image: Vec<u8>,
-    /// False if the replay needs recorded states to continue.
-    has_states: bool,
+    in_second: bool,  // true if the last tick is in the second half
+    image: Vec<u8>,   // byte image of common memory after the last tick
+    has_states: bool, // false if the replay needs recorded states to continue
     last: Tick,
     stretch: Stretch,
 }
 
 impl Replayer {
-    /// At the start of a run.
     fn new() -> Self {
         Self {
             ladder: Ladder::default(),
@@ -364,7 +330,6 @@ impl Replayer {
     }
 }
 
-/// The byte image of a record.
 fn image<T: Plain>(record: &T) -> Vec<u8> {
     let mut image = vec![0; T::SIZE];
     record.encode(&mut Writer::new(&mut image));

@@ -1,7 +1,6 @@
 //! Limits of a log: a run of months writes logs one after the other, and keeps the newest.
 //!
-//! Each of them has the head of the run, and begins with whole images and the states of all processes, so it
-//! can be read and replayed without the earlier ones.
+//! Each log begins with whole images and states, so it can be read and replayed without the others.
 
 use std::{
     fs, io,
@@ -31,10 +30,6 @@ impl LogLimit {
         self.kept.is_some() && is_earlier(log, &path) && directory(log) == directory(&path)
     }
 
-    /// Remove the oldest earlier logs of a log.
-    ///
-    /// # Errors
-    /// Errors of the directory and of the removal.
     pub(crate) fn remove_oldest(&self, log: &Path) -> io::Result<()> {
         let Some(kept) = self.kept else { return Ok(()) };
         let directory = log.parent().filter(|directory| !directory.as_os_str().is_empty());

@@ -1,8 +1,7 @@
 //! The row channels: one per process, `/process/row`, with the row of a decision table that fired.
 //!
-//! A message has the row as text, the step in which it was looked up, the values of the state variables in its table,
-//! the tick in which it fired, and the rows of other tables that fired in addition. A process at rest repeats its last
-//! row in its header, with `resting` set. A message is written when anything except the tick changes.
+//! A message has the row as text, its step, the state variables, its tick, and the rows of other tables that fired. It
+//! is written when anything except the tick changes. A process at rest repeats its last row, with `resting` set.
 
 use std::io::{Seek, Write};
 
@@ -28,8 +27,7 @@ pub struct Rows(Vec<Channel>);
 struct Channel {
     id: u16,
     place: HeaderPlace,
-    /// The last message, without its tick.
-    last: Option<(Header, Vec<u8>)>,
+    last: Option<(Header, Vec<u8>)>, // the last message, without its tick
 }
 
 const ROW: &str = "Row";
@@ -72,7 +70,6 @@ impl Rows {
         headers().into_iter().map(open).collect::<McapResult<_>>().map(Self)
     }
 
-    /// Write the rows that differ from the previous tick, or all of them.
     pub fn write<W: Write + Seek>(
         &mut self,
         output: &mut Output<W>,
@@ -109,7 +106,6 @@ fn timeless(header: &Header) -> Header {
     Header { stamp: Tick::BEFORE_START, basis, ..*header }
 }
 
-/// The message without the tick.
 fn row_message(place: &HeaderPlace, header: &Header) -> Vec<u8> {
     let (table, conditions, action, next) = match place.fired(header) {
         Some(Fired { table, row, .. }) => {

@@ -1,8 +1,7 @@
 //! The moving cell: `/tf`, `/tf_static`, `/joint_states`, `/robot_description`, `/meshes`, `/names`, `/trail`,
 //! `/contacts` and `/camera`.
 //!
-//! Links are given relative to their parents in the URDF, so that description and transforms always agree in a
-//! viewer, and the position of a link that only turns does not change.
+//! Links are given relative to their parents, so that description and transforms always agree.
 
 use std::io::{Seek, Write};
 
@@ -21,31 +20,23 @@ use crate::{
     trail::Trail,
 };
 
-/// Steps of a metre, of a radian, and of the unit of a quaternion, in the log: 8 µm and 8 µrad are finer than
-/// any picture, and the rounded values compress well. The exact inputs of the controller are on `/replay`.
+/// 8 µm and 8 µrad are finer than any picture, and compress well. Exact inputs are on `/replay`.
 const STEP: f64 = 131_072.0;
 
-/// Topic of the moving links.
 pub const TF: &str = "/tf";
-/// Topic of the fixed links.
 pub const TF_STATIC: &str = "/tf_static";
 
-/// Topic of the shapes of links: one message at the start of the log.
-pub const MESHES: &str = "/meshes";
-/// Topic of the names of bodies: one message at the start of the log.
-pub const NAMES: &str = "/names";
+pub const MESHES: &str = "/meshes"; // one message at the start of the log
+pub const NAMES: &str = "/names"; // one message at the start of the log
 
-/// Topic of the pictures of the wrist camera.
 pub const CAMERA: &str = "/camera";
 
 /// A frame at the tool point with the axes of the world, so that a view attached to it does not turn.
 const TOOL_POINT: &str = "tool_point";
-/// The frame of fixed bodies.
-const WORLD: &str = "world";
+const WORLD: &str = "world"; // the frame of fixed bodies
 
 const CAMERA_LINK: &str = "quick_change";
-/// Height of the letters of a name, metres.
-const LETTERS: f64 = 0.10;
+const LETTERS: f64 = 0.10; // height of the letters of a name, metres
 /// Their colour: viewers draw dark letters on a light background.
 const INK: Colour = [0.09, 0.12, 0.14, 1.0];
 
@@ -70,7 +61,6 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Open the channels of a cell.
     pub fn open<W: Write + Seek>(output: &mut Output<W>, model: CellModel) -> McapResult<Self> {
         let descriptors = foxglove::frame_transforms_descriptor();
         let moving = output.protobuf(TF, foxglove::FRAME_TRANSFORMS, &descriptors)?;
@@ -106,8 +96,6 @@ impl Scene {
         })
     }
 
-    /// Write the links that have moved since the previous frame, or all that can move; before the first frame
-    /// also the fixed ones.
     pub fn write<W: Write + Seek>(
         &mut self,
         output: &mut Output<W>,
@@ -149,14 +137,12 @@ impl Scene {
         Ok(())
     }
 
-    /// Write a picture of the wrist camera.
     pub fn picture<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick, png: &[u8]) -> McapResult<()> {
         let mut data = Vec::new();
         foxglove::put_png(output.epoch.of(tick), CAMERA_LINK, png, &mut data);
         output.put(self.camera, tick, &data)
     }
 
-    /// Write all contacts from a tick on.
     pub fn touches<W: Write + Seek>(
         &self,
         output: &mut Output<W>,
@@ -168,7 +154,6 @@ impl Scene {
         output.put(self.contacts, tick, &data)
     }
 
-    /// Write the data that are valid for the whole log.
     fn describe<W: Write + Seek>(&self, output: &mut Output<W>, tick: Tick) -> McapResult<()> {
         let mut data = Vec::new();
         ros::string(&self.model.urdf, &mut data);

@@ -1,18 +1,15 @@
 //! The file to which a log is written.
 //!
-//! Flushed data are in the operating system and survive the end of the program. To survive a power failure they
-//! must be on the disk, which takes milliseconds. A run in real time therefore waits for the disk with every
-//! flush, once per second, in the thread of the log. A run in fast clock does not, because it can be repeated.
+//! Flushed data survive the end of the program, but not a power failure. A run in real time therefore waits for the
+//! disk with every flush, once per second, in the thread of the log.
 
 use std::{
     fs::File,
     io::{self, BufWriter, Seek, SeekFrom, Write},
 };
 
-/// Size of the buffer, bytes. Most chunks are written in one piece.
 const BUFFER: usize = 64 * 1024;
 
-/// A file with a buffer before it.
 pub struct Sink {
     file: BufWriter<Whole>,
     durable: bool,
@@ -21,8 +18,7 @@ pub struct Sink {
 /// A file that must not become shorter than the data written to it: after truncation it would contain zeros.
 struct Whole {
     file: File,
-    /// Its least length, bytes.
-    length: u64,
+    length: u64, // bytes
 }
 
 impl Write for Whole {

@@ -1,5 +1,3 @@
-//! Another receiver of the messages of a log while it is written.
-
 /// Receives the channels and messages of a log while it is written, in the writer's thread and in the order of
 /// their times. It ends with the log. The writer waits for it: a slow tap delays the log, but not the tick.
 pub trait Tap: Send {
@@ -14,14 +12,11 @@ pub trait Tap: Send {
     }
 }
 
-/// Description of a channel of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Channel<'a> {
     pub topic: &'a str,
-    /// Encoding of the messages: `protobuf`, `cdr`.
-    pub encoding: &'a str,
+    pub encoding: &'a str, // `protobuf`, `cdr`
     pub schema_name: &'a str,
-    /// Encoding of the schema: `protobuf`, `ros2msg`.
-    pub schema_encoding: &'a str,
+    pub schema_encoding: &'a str, // `protobuf`, `ros2msg`
     pub schema: &'a [u8],
 }

@@ -18,16 +18,11 @@ use crate::{
 
 pub const TRAIL: &str = "/trail";
 
-/// The link whose origin is the tool point.
-const TOOL: &str = "quick_change";
-/// Ticks from one point to the next.
-const STEP: u64 = 10;
-/// Ticks from one message to the next: a second, so that a reader soon finds one.
-const MESSAGE: u64 = 25;
-/// Points of the line: those of 20 seconds.
-const POINTS: usize = 50;
-/// Least distance of a new point from the last one, m.
-const NEAR: f64 = 0.002;
+const TOOL: &str = "quick_change"; // the link whose origin is the tool point
+const STEP: u64 = 10; // ticks from one point to the next
+const MESSAGE: u64 = 25; // ticks from one message to the next: a second, so that a reader soon finds one
+const POINTS: usize = 50; // points of the line: those of 20 seconds
+const NEAR: f64 = 0.002; // least distance of a new point from the last one, m
 const THICKNESS: f64 = 0.006;
 const COLOUR: Colour = [0.95, 0.20, 0.45, 0.9];
 
@@ -44,7 +39,6 @@ impl Trail {
         let channel = output.protobuf(TRAIL, scene::SCENE_UPDATE, &scene::descriptor())?;
         let mut chain = Vec::new();
         let mut name = TOOL;
-        // A chain is not longer than there are links.
         for _ in &model.links {
             let mut links = model.links.iter().enumerate();
             let Some((at, link)) = links.find(|(_, link)| link.name == name) else { break };
@@ -86,7 +80,6 @@ impl Trail {
     }
 }
 
-/// A point of a frame in coordinates of its parent.
 fn moved(place: &Transform, [x, y, z]: [f64; 3]) -> [f64; 3] {
     let [a, b, c, w] = place.rotation;
     let (s, t, u) = (b * z - c * y + w * x, c * x - a * z + w * y, a * y - b * x + w * z);

@@ -11,19 +11,15 @@
 //! | `/ladder` | command, status and row of all processes | on change |
 //! | `/instruments` | openings and forces of the grippers in SI units | on change, and every ten seconds |
 //! | `/job/lines`, `/job/state`, `/operator/state`, `/cell/controller`, `/cell/parts`, `/cell/places` | the run outside the buffers ([`crate::views`]) | on change, and every ten seconds |
-//! | `/contacts` | a mark where the robot, or what it carries, touches something | on change |
+//! | `/contacts` | a mark at each contact of the robot or its load | on change |
 //! | `/log` | `foxglove.Log` | when there is a remark |
 //! | `/operator` | `rcs.OperatorLine` | on a request of an operator |
 //!
-//! Only `/replay` is lossless: message *n* has the difference of the images from those of message *n*-1, and
-//! once per second the whole images and the states after that tick, where a replay can start. The other
-//! channels have the same values for readers. There, a clock or a counter that changes in every tick is not a
-//! change (see [`crate::channels`]).
+//! Only `/replay` is lossless: differences, and once per second the whole images and states, where a replay can start.
+//! On the other channels a clock or a counter is not a change ([`crate::channels`]).
 //!
-//! Once per second of simulated time the open chunk is written out, and then a chunk with the messages of that
-//! second on `/replay`, of which the first has the whole images: a killed run loses a second. Unchanged buffers
-//! are repeated less often: each message costs sixteen additional bytes of index, and fifty unchanged buffers
-//! would be a fifth of a log.
+//! Once per second the open chunk is written out, then a chunk with the messages of that second on `/replay`: a killed
+//! run loses a second. Unchanged buffers are repeated less often, because each message costs sixteen bytes of index.
 
 use std::{
     collections::BTreeMap,
@@ -57,8 +53,7 @@ use crate::{
 pub const FULL_SET: u64 = 25;
 /// Full sets from one repetition of all buffers for people to the next: ten seconds.
 const REPETITION: u64 = 10;
-/// Uncompressed size at which a chunk is closed before its second is over, bytes: three times the size of a
-/// second of a moving cell.
+/// Uncompressed size at which a chunk is closed early, bytes: three times a second of a moving cell.
 const CHUNK: u64 = 256 * 1024;
 /// Level of the compression. At level 6 a log is a twenty-sixth smaller, and a run takes a seventh more processor time.
 const COMPRESSION: u32 = 3;
@@ -78,13 +73,10 @@ pub struct TickRecord {
 /// Times of a tick. They are not part of the digest, and a replay ignores them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timing {
-    /// Time that the controller took, nanoseconds.
-    pub controller_ns: u64,
-    /// Slots of the 40 ms grid that were skipped since the start of the run.
-    pub skipped: u64,
+    pub controller_ns: u64, // nanoseconds
+    pub skipped: u64,       // of the 40 ms grid, since the start
 }
 
-/// A log that is being written.
 pub struct LogWriter<W: Write + Seek> {
     output: Output<W>,
     lossless: Lossless,
@@ -97,8 +89,7 @@ pub struct LogWriter<W: Write + Seek> {
     ladder: LadderChannel,
     instruments: InstrumentsChannel,
     views: Views,
-    /// Begin of the last workstation action of the job on `/log`.
-    action_began: u64,
+    action_began: u64, // begin of the last workstation action of the job on `/log`
     operator: OperatorChannel,
     last: Images,
     now: Images,
@@ -114,18 +105,11 @@ pub struct LogWriter<W: Write + Seek> {
 }
 
 impl<W: Write + Seek> LogWriter<W> {
-    /// Begin a log: metadata, attachments, channels.
-    ///
-    /// # Errors
-    /// Errors of `sink`.
     pub fn create(sink: W, setup: Setup) -> McapResult<Self> {
         Self::create_with(sink, setup, None)
     }
 
-    /// Like [`LogWriter::create`], with a tap for all channels and messages.
-    ///
-    /// # Errors
-    /// Errors of `sink`.
+    /// Like [`LogWriter::create`], with a tap for all channels and messages. Errors are those of `sink`.
     pub fn create_with(sink: W, setup: Setup, tap: Option<Box<dyn Tap>>) -> McapResult<Self> {
         // A profile would promise viewers that all channels follow its rules.
         let options = WriteOptions::new()
@@ -133,7 +117,6 @@ impl<W: Write + Seek> LogWriter<W> {
             .library(concat!("rcs-record ", env!("CARGO_PKG_VERSION")))
             .compression(Some(Compression::Zstd))
             .compression_level(COMPRESSION)
-            // In this thread, so that the file does not depend on the number of cores.
             .compression_threads(0)
             .chunk_size(Some(CHUNK));
         let mut output = Output { mcap: options.create(sink)?, epoch: setup.epoch, tap };
@@ -174,7 +157,6 @@ impl<W: Write + Seek> LogWriter<W> {
         })
     }
 
-    /// Returns true if a tick has been written.
     pub(crate) const fn has_ticks(&self) -> bool {
         self.ticks > 0
     }
@@ -188,10 +170,7 @@ impl<W: Write + Seek> LogWriter<W> {
         self.earlier = Some(name);
     }
 
-    /// Write a tick. `state` has the states after it; give it with the first tick, once per second, and after a gap.
-    ///
-    /// # Errors
-    /// Errors of the sink.
+    /// `state` has the states after it; give it with the first tick, once per second, and after a gap.
     pub fn tick(
         &mut self,
         record: &TickRecord,
@@ -247,7 +226,6 @@ impl<W: Write + Seek> LogWriter<W> {
         Ok(())
     }
 
-    /// Write the changes of the state after a tick for viewers, or the whole state, from the images of the tick.
     fn write_state(
         &mut self,
         tick: Tick,
@@ -271,10 +249,6 @@ impl<W: Write + Seek> LogWriter<W> {
         self.write_state(tick, (&hws, &memory), true)
     }
 
-    /// Write a line on `/log`.
-    ///
-    /// # Errors
-    /// Errors of the sink.
     pub fn remark(&mut self, tick: Tick, remark: &Remark) -> McapResult<()> {
         let Remark { level, source, text, file, line } = remark;
         let mut data = Vec::new();
@@ -282,10 +256,7 @@ impl<W: Write + Seek> LogWriter<W> {
         self.output.put(self.log, tick, &data)
     }
 
-    /// Write data for viewers; a log without a cell has no channels for pictures and contacts.
-    ///
-    /// # Errors
-    /// Errors of the sink.
+    /// A log without a cell has no channels for pictures and contacts.
     pub fn show(&mut self, tick: Tick, shown: &Shown) -> McapResult<()> {
         match (shown, &self.scene) {
             (Shown::View(view), _) => {
@@ -298,7 +269,6 @@ impl<W: Write + Seek> LogWriter<W> {
         }
     }
 
-    /// Write a line on `/log` when the job begins an action of the workstation; Task reports the commands.
     fn note_action(&mut self, tick: Tick, view: &View) -> McapResult<()> {
         let View::JobState(job) = view else { return Ok(()) };
         if job.is_command || job.began == self.action_began || job.text.is_empty() {
@@ -309,27 +279,16 @@ impl<W: Write + Seek> LogWriter<W> {
         self.remark(tick, &Remark { source: "job".into(), text, ..Remark::default() })
     }
 
-    /// Write a request of an operator.
-    ///
-    /// # Errors
-    /// Errors of the sink.
     pub fn operator(&mut self, line: &OperatorLine) -> McapResult<()> {
         self.operator.put(&mut self.output, line)
     }
 
-    /// Write a file of the run.
-    ///
-    /// # Errors
-    /// Errors of the sink.
     pub fn attach(&mut self, tick: Tick, attachment: Attachment) -> McapResult<()> {
         let time = self.output.epoch.of(tick);
         attach(&mut self.output, time, attachment)
     }
 
-    /// End the log: metadata and summary.
-    ///
-    /// # Errors
-    /// Errors of the sink.
+    /// End the log: metadata and summary. Errors are those of the sink.
     pub fn finish(mut self, end: &End, lost: Lost) -> McapResult<Written> {
         let digest = end.digest.map_or_else(String::new, |digest| format!("{digest:016x}"));
         let entries = [

@@ -1,11 +1,6 @@
-//! A run that is killed with `kill -9` at ten random moments. Its log can be read and replayed, and at most a
-//! second of the ticks that the writer had received is missing.
-//!
-//! The test starts itself with an argument as the victim, which records a run in real time at twice the robot's
-//! speed. It prints each recorded tick on its standard output, with the number of ticks that wait for the
-//! writer. On a busy machine many may wait, which is not an error of the log.
-//!
-//! `cargo test --release -p record --test kill` prints the ten moments and the remaining ticks.
+//! A run that is killed with `kill -9` at ten random moments: its log can be replayed, and at most a second of the
+//! ticks that the writer had received is missing. The test starts itself as the victim, which prints each recorded tick
+//! with the number of waiting ticks: `cargo test --release -p record --test kill` prints the moments.
 
 #![expect(clippy::print_stdout, reason = "the figures of a campaign are printed")]
 
@@ -24,11 +19,9 @@ use rcs_core::tick::Tick;
 use record::{Epoch, Log, Pace, Recorder, Setup, replay, writer::FULL_SET};
 use taskdata::files::TaskData;
 
-/// Argument that makes the program a victim.
-const VICTIM: &str = "--victim";
+const VICTIM: &str = "--victim"; // argument that makes the program a victim
 const RUNS: u64 = 10;
-/// Length of a tick here.
-const PERIOD: Duration = Duration::from_millis(20);
+const PERIOD: Duration = Duration::from_millis(20); // length of a tick here
 /// The unflushed second of ticks, and the tick that the writer is processing.
 const MOST_LOST: u64 = FULL_SET + 1;
 
@@ -77,7 +70,6 @@ fn kill_ten() -> ExitCode {
     ExitCode::from(u8::from(survived < RUNS))
 }
 
-/// Record a run, and kill it at a moment after its first tick.
 fn survives(path: &Path, moment: Duration) -> bool {
     let mut program = Command::new(env::current_exe().expect("a test has a path"));
     let mut child = program.arg(VICTIM).arg(path).stdout(Stdio::piped()).spawn().expect("it starts");
@@ -91,12 +83,10 @@ fn survives(path: &Path, moment: Duration) -> bool {
     begun && judge(path, moment, &last)
 }
 
-/// The last output of a victim.
 #[derive(Default)]
 struct Said {
     tick: u64,
-    /// Ticks that waited for the writer.
-    pending: u64,
+    pending: u64, // ticks that waited for the writer
 }
 
 impl Said {

@@ -1,7 +1,5 @@
-//! Logs as a whole: written by the recorder, read back, damaged, replayed.
-//!
-//! The run is a ladder without task data, with inputs that keep it busy. The tests check that the log has
-//! exactly the data of the ladder.
+//! Logs as a whole: written by the recorder, read back, damaged, replayed. The log must have exactly the data of a
+//! ladder without task data.
 
 use std::{
     fs,
@@ -23,7 +21,6 @@ use record::{
 use taskdata::{files::TaskData, load::Source};
 use tempfile::TempDir;
 
-/// A directory that is removed at the end of a test.
 struct Scratch(TempDir);
 
 impl Scratch {
@@ -56,7 +53,6 @@ fn setup() -> Setup {
     }
 }
 
-/// Inputs that change in every tick, with a command every hundred ticks.
 fn inputs(tick: Tick) -> ExternalInputs {
     let mut external = ExternalInputs::default();
     let turn = u32::try_from(tick.0 * 37 % 131_072).unwrap();
@@ -69,7 +65,6 @@ fn inputs(tick: Tick) -> ExternalInputs {
     external
 }
 
-/// The data that a run records in `ticks` ticks.
 fn run(ticks: u64, mut each: impl FnMut(Tick, &ExternalInputs, &CommonMemory, LadderState)) -> u64 {
     let mut ladder = Ladder::default();
     let mut digest = rcs_core::digest::Digest::new();
@@ -83,7 +78,6 @@ fn run(ticks: u64, mut each: impl FnMut(Tick, &ExternalInputs, &CommonMemory, La
     digest.value()
 }
 
-/// A digest that uses all its bits.
 fn cell_digest(tick: Tick) -> u64 {
     u64::MAX - tick.0
 }
@@ -103,7 +97,6 @@ fn record_run(path: &Path, ticks: u64) -> record::Summary {
     recorder.finish(End { digest: Some(digest), result: "finished".into(), ..End::default() }).unwrap()
 }
 
-/// A directory with the log of a run of this number of ticks, and its path.
 fn recorded(ticks: u64) -> (Scratch, PathBuf) {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
@@ -214,7 +207,6 @@ fn changed_byte_is_reported_or_harmless() {
     assert!(untold > 0, "an index that is wrong is not used");
 }
 
-/// A log rewritten as by another program.
 fn written_again(log: &[u8], options: mcap::WriteOptions) -> Vec<u8> {
     let mut writer = options.create(Cursor::new(Vec::new())).unwrap();
     let summary = mcap::Summary::read(log).unwrap().unwrap();
@@ -355,7 +347,6 @@ fn unreadable_chunk_with_right_checksums_leaves_a_gap() {
     assert!(skipped > 0, "a chunk with ticks was among them");
 }
 
-/// Counts messages, and checks their times.
 #[derive(Clone, Default)]
 struct Played(Arc<Mutex<(u64, u64)>>);
 
@@ -488,7 +479,6 @@ fn other_files_are_refused_as_logs() {
     assert!(matches!(Log::open(&path), Err(ReadError::NotALog { .. })));
 }
 
-/// A disk with this number of free bytes.
 struct Disk {
     bytes: Cursor<Vec<u8>>,
     left: usize,
@@ -583,7 +573,7 @@ fn full_disk_is_reported_before_the_run() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_device_is_no_log() {
+fn device_is_refused_as_a_log() {
     let error = Recorder::start(Path::new("/dev/full"), Pace::Drop, setup()).err().unwrap();
     assert!(error.to_string().ends_with("a regular file was expected, found a device"), "{error}");
 }

@@ -8,8 +8,7 @@ use rcs_core::{Plain, digest::Digest, name::Name16, tick::Tick};
 use record::{Attachment, End, Epoch, Pace, Recorder, ReplayError, Setup, replay};
 use taskdata::load::{Source, Store};
 
-/// Tick from which the reload is valid.
-const RELOADED: u64 = 40;
+const RELOADED: u64 = 40; // tick from which the reload is valid
 const TICKS: u64 = 80;
 
 fn block(text: &str) -> Vec<Source> {
@@ -33,7 +32,6 @@ fn inputs(tick: u64) -> ExternalInputs {
     external
 }
 
-/// Records the run; `attach` is true to write the reload to the log.
 fn record_run(path: &Path, attach: bool) -> Vec<(HwsReport, Reason)> {
     let before = Store::default();
     let (after, _) = before.with_blocks(home()).expect("the blocks are sound");

@@ -11,15 +11,11 @@ use record::{
 };
 use taskdata::files::TaskData;
 
-/// Number of ticks of the run.
-const TICKS: u64 = 1000;
-/// Size of a log, bytes: some seconds of this run.
-const SIZE: u64 = 60_000;
+const TICKS: u64 = 1000; // number of ticks of the run
+const SIZE: u64 = 60_000; // size of a log, bytes: some seconds of this run
 
-/// Tick in which the run gets another file.
-const ADDED: u64 = 30;
+const ADDED: u64 = 30; // tick in which the run gets another file
 
-/// Inputs that move something in every tick.
 fn inputs(tick: Tick) -> ExternalInputs {
     let mut external = ExternalInputs::default();
     let turn = u32::try_from(tick.0 * 37 % 131_072).unwrap();

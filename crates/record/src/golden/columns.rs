@@ -1,8 +1,7 @@
 //! Images of many ticks as columns: one column per field.
 //!
-//! A column is a list of changes: ticks since the previous change, and the difference as a number (or, for
-//! names, frames on the line and payloads of larger unions, the new bytes). A field that never changes is an
-//! empty column. The noise of a converter is two small bytes per change, which compress to a few bits.
+//! A column is a list of changes: ticks since the previous change, and the difference (or, for names and frames, the
+//! new bytes). The noise of a converter is two small bytes per change, which compress to a few bits.
 
 use rcs_core::{plain::StructSchema, reflect};
 
@@ -11,15 +10,12 @@ use crate::{
     proto::wire::{put_varint, take_varint, unzigzag, zigzag},
 };
 
-/// A field and its last value.
 struct Column {
     piece: Piece,
     last: Vec<u8>,
-    /// Tick of the last change.
-    changed: u64,
+    changed: u64, // tick of the last change
 }
 
-/// A column for each field of a record.
 fn columns(record: &'static StructSchema) -> Vec<Column> {
     let column = |piece: Piece| Column { last: vec![0; piece.size], piece, changed: 0 };
     layout::pieces(record).into_iter().map(column).collect()
@@ -31,12 +27,10 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// Empty columns. The image before the first is zeros.
     pub fn new(record: &'static StructSchema) -> Self {
         Self { columns: columns(record).into_iter().map(|column| (column, Vec::new())).collect(), tick: 0 }
     }
 
-    /// The image of the next tick.
     pub fn add(&mut self, image: &[u8]) {
         self.tick += 1;
         for (column, out) in &mut self.columns {
@@ -71,7 +65,6 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// A reader of columns that [`Columns`] made for the same record.
     pub fn new(record: &'static StructSchema, bytes: &'a [Vec<u8>]) -> Self {
         let columns = columns(record);
         let sound = columns.len() == bytes.len();
@@ -95,7 +88,6 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Apply the due change, and read the time of the next one.
 fn change(column: &Column, due: &mut Option<u64>, rest: &mut &[u8], image: &mut [u8]) -> Option<()> {
     let Piece { offset, size, number } = column.piece;
     let field = image.get_mut(offset..offset + size)?;
@@ -125,7 +117,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn images_come_back(
+        fn column_images_round_trip(
             changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0_usize..4), 0..200),
         ) {
             let mut image = vec![0; ExternalInputs::SIZE];

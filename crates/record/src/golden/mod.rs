@@ -1,9 +1,8 @@
 //! A run as a small file to keep with the source: its inputs, and fingerprints of its outputs.
 //!
-//! A log has every buffer of every tick; a golden can only show whether the outputs are still the same. It has
-//! the inputs of the ladder as one column per field (ticks until each change, and its amount), the task data,
-//! and the digest of all output buffers after each second. Its replay finds the second in which the present
-//! program first differs, and writes a [`Summary`] as text for review against the kept one.
+//! A golden has the inputs of the ladder as one column per field, the task data, and the digest of all output buffers
+//! after each second. Its replay finds the second in which the present program first differs, and writes a [`Summary`]
+//! as text for review.
 //!
 //! ```text
 //!  run --log--> golden::from_log --> NAME.golden, NAME.txt    once, by a command
@@ -42,23 +41,19 @@ use crate::{
     replay::{generations_of, log_sources},
 };
 
-/// First bytes of the file; the last one is the version of the format.
 const MAGIC: [u8; 8] = *b"RCSGOLD\x01";
 /// Level of the compression, since a golden is written once and read a thousand times.
 const COMPRESSION: i32 = 19;
-/// Greatest size of an unpacked golden, bytes: a day of running is less.
-const LARGEST: usize = 1 << 30;
-/// Largest file of a golden, bytes.
-const FILE: u64 = 1 << 28;
+const LARGEST: usize = 1 << 30; // greatest size of an unpacked golden, bytes: a day of running is less
+const FILE: u64 = 1 << 28; // largest file of a golden, bytes
 /// Ticks from one digest to the next: a second.
 pub const SECOND: u64 = 25;
 pub const EXTENSION: &str = "golden";
 
 #[derive(Clone, PartialEq, prost::Message)]
 struct Content {
-    /// Version of the images of inputs and output buffers.
     #[prost(string, tag = "1")]
-    layout: String,
+    layout: String, // of the images of inputs and outputs
     #[prost(btree_map = "string, string", tag = "2")]
     run: BTreeMap<String, String>,
     /// Task data and reloads, under their names in the log.
@@ -66,9 +61,8 @@ struct Content {
     files: Vec<File>,
     #[prost(uint64, tag = "4")]
     ticks: u64,
-    /// The inputs, one column per field.
     #[prost(bytes = "vec", repeated, tag = "5")]
-    columns: Vec<Vec<u8>>,
+    columns: Vec<Vec<u8>>, // one per field
     /// Digest of all ticks so far, after each second and after the last tick.
     #[prost(fixed64, repeated, tag = "6")]
     digests: Vec<u64>,
@@ -82,46 +76,35 @@ struct File {
     text: String,
 }
 
-/// A run with only the data for a replay.
 #[derive(Clone, PartialEq)]
 pub struct Golden(Content);
 
-/// Reasons why a golden cannot be made, read or replayed.
 #[derive(Debug, thiserror::Error)]
 pub enum GoldenError {
-    /// The file cannot be read or written.
     #[error("{}: {source}", path.display())]
     File { path: PathBuf, source: std::io::Error },
-    /// The bytes are not a golden run.
     #[error("{} is no golden run of this format: {what}", path.display())]
     NotAGolden { path: PathBuf, what: String },
-    /// The golden was made with another layout of buffers.
     #[error(
         "the golden was made with layout {found}, this program has layout {expected}: make it again from a run"
     )]
     OtherLayout { expected: String, found: String },
-    /// The log does not have the whole run.
     #[error("the log cannot become a golden: {0}")]
     NotWhole(&'static str),
-    /// The inputs of a tick do not fit the layout.
     #[error("the inputs of tick {tick} are damaged")]
     Damaged { tick: u64 },
     #[error(transparent)]
     Log(#[from] ReadError),
-    /// The task data do not load, or some are missing.
     #[error(transparent)]
     Replay(#[from] ReplayError),
 }
 
-/// Result of the replay of a golden.
 #[derive(Clone, Debug)]
 pub struct Played {
     pub ticks: u64,
     /// First and last tick of the first second in which the output buffers differed, if they did.
     pub difference: Option<(u64, u64)>,
-    /// Digest of all output buffers of all ticks.
     pub digest: Digest,
-    /// Summary of the run as text.
     pub summary: String,
     pub elapsed: Duration,
 }
@@ -135,10 +118,6 @@ impl Played {
     }
 }
 
-/// Read a golden.
-///
-/// # Errors
-/// [`GoldenError`] if the file cannot be read, is not a golden, or has another layout.
 pub fn read(path: &Path) -> Result<Golden, GoldenError> {
     let bytes =
         files::read(path, FILE).map_err(|source| GoldenError::File { path: path.to_owned(), source })?;
@@ -153,10 +132,6 @@ pub fn read(path: &Path) -> Result<Golden, GoldenError> {
     Ok(Golden(content))
 }
 
-/// Write a golden.
-///
-/// # Errors
-/// [`GoldenError::File`].
 pub fn write(golden: &Golden, path: &Path) -> Result<(), GoldenError> {
     let failed = |source| GoldenError::File { path: path.to_owned(), source };
     let mut bytes = MAGIC.to_vec();
@@ -165,10 +140,7 @@ pub fn write(golden: &Golden, path: &Path) -> Result<(), GoldenError> {
     replace(path, &bytes).map_err(failed)
 }
 
-/// Make a golden of the log of a whole run.
-///
-/// # Errors
-/// [`GoldenError::NotWhole`] if the log has gaps or no end; other errors if it cannot be read.
+/// Make a golden of the log of a whole run. Fails if the log has gaps or no end, or cannot be read.
 pub fn from_log(log: &Log) -> Result<Golden, GoldenError> {
     log.check_layout()?;
     if !log.complete {
@@ -230,29 +202,23 @@ impl Golden {
         self.0.ticks
     }
 
-    /// Metadata of the run: job, seed, faults.
     #[must_use]
     pub const fn run(&self) -> &BTreeMap<String, String> {
         &self.0.run
     }
 
-    /// Digest of all output buffers of all ticks.
     #[must_use]
     pub fn digest(&self) -> u64 {
         self.0.digests.last().copied().unwrap_or_default()
     }
 
     /// The task data of the run, in the order in which they were loaded, and after each reload.
-    ///
-    /// # Errors
-    /// [`ReplayError::TaskData`] with the report of the loader.
     pub fn data(&self) -> Result<Vec<Store>, ReplayError> {
         let attachment = |file: &File| Attachment::text(&file.name, &file.text);
         let attachments: Vec<Attachment> = self.0.files.iter().map(attachment).collect();
         generations_of(log_sources(&attachments), &attachments)
     }
 
-    /// The inputs of the ladder in each tick, from the first on.
     pub fn inputs(&self) -> impl Iterator<Item = Result<(Tick, ExternalInputs), GoldenError>> {
         let mut reader = Reader::new(ExternalInputs::STRUCT, &self.0.columns);
         (1..=self.0.ticks).map(move |tick| {
@@ -263,19 +229,12 @@ impl Golden {
     }
 }
 
-/// Run the present program on the inputs of a golden, with the task data of the golden.
-///
-/// # Errors
-/// [`GoldenError`] if its inputs are damaged or its task data do not load. A difference is not an error, but
-/// part of the result.
+/// Run the present program on the inputs of a golden, with its task data. A difference is part of the result.
 pub fn replay(golden: &Golden) -> Result<Played, GoldenError> {
     replay_with(golden, &golden.data()?)
 }
 
-/// Run the present program on the inputs of a golden, with other task data: one store per generation.
-///
-/// # Errors
-/// The errors of [`replay`].
+/// Like [`replay`], with other task data: one store per generation.
 pub fn replay_with(golden: &Golden, data: &[Store]) -> Result<Played, GoldenError> {
     let started = Instant::now();
     let (mut ladder, mut memory, mut digest) = (Ladder::default(), CommonMemory::default(), Digest::new());

@@ -23,7 +23,6 @@ use crate::{
 /// Number of warnings and errors that are written out; further ones are counted.
 const TROUBLES: usize = 30;
 
-/// A command of the workstation controller.
 struct Command {
     text: String,
     first: Tick,
@@ -32,7 +31,6 @@ struct Command {
     unconfirmed: Unconfirmed,
 }
 
-/// Collects the summary, tick by tick.
 pub struct Summary {
     run: BTreeMap<String, String>,
     headers: Vec<HeaderPlace>,
@@ -45,7 +43,6 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// An empty summary of a run with these metadata.
     #[must_use]
     pub fn new(run: &BTreeMap<String, String>) -> Self {
         Self {
@@ -59,7 +56,6 @@ impl Summary {
         }
     }
 
-    /// Add a tick.
     pub fn observe(
         &mut self,
         tick: Tick,
@@ -102,7 +98,6 @@ impl Summary {
         }
     }
 
-    /// The summary, with the digest at the end of the run.
     #[must_use]
     pub fn text(&self, digest: Digest) -> String {
         let mut text = String::new();

@@ -16,9 +16,8 @@
 //! |                          | text, and an optional field for what each carries, number code + 2.  |
 //! |                          | The enum is in a nested message: a variant and its field are alike   |
 //!
-//! The wrapping message gives each enum its own scope: protobuf forbids equal variants of two enums in one
-//! scope. A field of a union is named after its variant, so that a reader finds `goal.at_a_place.x` under its
-//! path in [`crate::layout`].
+//! The wrapping message gives each enum its own scope: protobuf forbids equal variants of two enums in one scope. A
+//! field of a union is named after its variant, as in [`crate::layout`].
 
 use prost::Message as _;
 use prost_types::{
@@ -28,13 +27,11 @@ use prost_types::{
 };
 use rcs_core::plain::{EnumSchema, Schema, StructSchema, UnionSchema};
 
-/// Package of all messages of this project.
 pub const PACKAGE: &str = "rcs";
 
 /// The field of a union's message with the variant.
 pub const KIND: &str = "kind";
 
-/// Full name of the message of a record.
 #[must_use]
 pub fn message_name(record: &StructSchema) -> String {
     format!("{PACKAGE}.{}", record.name)
@@ -48,13 +45,11 @@ pub fn descriptor_set(record: &StructSchema) -> Vec<u8> {
     encode_set(vec![file("rcs.proto", PACKAGE, &[], messages)])
 }
 
-/// A `FileDescriptorSet` in the form of an MCAP schema.
 #[must_use]
 pub fn encode_set(files: Vec<FileDescriptorProto>) -> Vec<u8> {
     FileDescriptorSet { file: files }.encode_to_vec()
 }
 
-/// A file with its package, the files it imports, and its messages.
 #[must_use]
 pub fn file(
     name: &str,
@@ -89,7 +84,6 @@ pub fn message(name: &str, mut fields: Vec<FieldDescriptorProto>) -> DescriptorP
     }
 }
 
-/// A field of a scalar type.
 #[must_use]
 pub fn field(name: &str, number: i32, kind: Type) -> FieldDescriptorProto {
     FieldDescriptorProto {
@@ -101,7 +95,6 @@ pub fn field(name: &str, number: i32, kind: Type) -> FieldDescriptorProto {
     }
 }
 
-/// A field whose type is a message or an enum, by its full name.
 #[must_use]
 pub fn typed_field(name: &str, number: i32, kind: Type, of: &str) -> FieldDescriptorProto {
     FieldDescriptorProto { type_name: Some(format!(".{of}")), ..field(name, number, kind) }
@@ -119,7 +112,6 @@ pub fn optional(field: FieldDescriptorProto) -> FieldDescriptorProto {
     FieldDescriptorProto { proto3_optional: (!absent_anyway).then_some(true), ..field }
 }
 
-/// An enum with codes and identifiers.
 #[must_use]
 pub fn enumeration(name: &str, values: Vec<(i32, String)>) -> EnumDescriptorProto {
     let value = |(number, name)| EnumValueDescriptorProto {
@@ -196,7 +188,6 @@ pub fn payload_number(code: u8) -> u16 {
     u16::from(code) + 2
 }
 
-/// Name of the message for an optional element of an array.
 fn element_name(option: &Schema) -> String {
     fn type_name(schema: &Schema) -> String {
         match schema {
@@ -233,13 +224,12 @@ fn schema_field(name: &str, number: i32, schema: &'static Schema) -> FieldDescri
     }
 }
 
-/// Code and identifier of each variant of an enum.
 fn enum_identifiers(of: &EnumSchema) -> Vec<(i32, String)> {
     identifiers(of.variants.iter().map(|variant| (variant.code, variant.text)))
 }
 
-/// Code and identifier of each variant, from its code and text. Protobuf requires identifiers: every other character
-/// becomes `_`, the empty text `NONE`, and a text that would equal an earlier one gets its code as a suffix.
+/// Code and identifier of each variant. Every character that protobuf forbids becomes `_`, the empty text `NONE`; an
+/// identifier that exists already gets its code as a suffix.
 #[must_use]
 pub fn identifiers<'a>(variants: impl Iterator<Item = (u8, &'a str)>) -> Vec<(i32, String)> {
     let mut names: Vec<(i32, String)> = Vec::new();

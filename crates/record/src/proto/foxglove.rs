@@ -1,7 +1,5 @@
-//! Messages of the `foxglove` package, which viewers recognize by name.
-//!
-//! Fields and numbers are those that foxglove publishes in its schema repository for `FrameTransforms` and
-//! `Log`; fields that this log never fills (message id, lineage) are not described.
+//! Messages of the `foxglove` package, which viewers recognize by name, with the numbers of foxglove's schema
+//! repository. Fields that this log never fills are not described.
 
 use prost_types::{DescriptorProto, FileDescriptorProto, field_descriptor_proto::Type};
 
@@ -10,11 +8,8 @@ use super::{
     wire::{self, Value},
 };
 
-/// Full name of the message on `/tf`.
 pub const FRAME_TRANSFORMS: &str = "foxglove.FrameTransforms";
-/// Full name of the message on `/camera`.
 pub const COMPRESSED_IMAGE: &str = "foxglove.CompressedImage";
-/// Full name of the message on `/log`.
 pub const LOG: &str = "foxglove.Log";
 
 /// Severity of a log line; the codes are those of `foxglove.Log`.
@@ -44,8 +39,7 @@ impl Level {
 /// Pose of a frame in another: metres, and a unit quaternion x, y, z, w.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
-    /// Origin of the frame, metres.
-    pub position: [f64; 3],
+    pub position: [f64; 3], // origin of the frame, metres
     pub rotation: [f64; 4],
 }
 
@@ -68,7 +62,6 @@ pub(super) fn doubles(name: &str, fields: &[&str]) -> DescriptorProto {
     message(name, fields.collect())
 }
 
-/// Descriptors of [`FRAME_TRANSFORMS`].
 #[must_use]
 pub fn frame_transforms_descriptor() -> Vec<u8> {
     let transform = message(
@@ -95,7 +88,6 @@ pub fn frame_transforms_descriptor() -> Vec<u8> {
     encode_set(vec![timestamp_file(), file("foxglove/FrameTransforms.proto", "foxglove", &imports, messages)])
 }
 
-/// Descriptors of [`COMPRESSED_IMAGE`].
 #[must_use]
 pub fn compressed_image_descriptor() -> Vec<u8> {
     let fields = vec![
@@ -120,7 +112,6 @@ pub fn put_png(time: u64, frame: &str, png: &[u8], out: &mut Vec<u8>) {
     wire::bytes(4, frame.as_bytes(), out);
 }
 
-/// Descriptors of [`LOG`].
 #[must_use]
 pub fn log_descriptor() -> Vec<u8> {
     let levels = ["UNKNOWN", "DEBUG", "INFO", "WARNING", "ERROR", "FATAL"];
@@ -165,8 +156,7 @@ pub(super) fn put_doubles(values: &[f64], out: &mut Vec<u8>) {
     (1..).zip(values).for_each(|(number, value)| wire::double(number, *value, out));
 }
 
-/// Append a `Log` message. `time` in nanoseconds since 1970; `file` and `line` are the source of the decision row, or
-/// empty and 0.
+/// Append a `Log` message. `time` in nanoseconds since 1970; `file` and `line` are the source of the row, if any.
 pub fn put_log(time: u64, level: Level, text: &str, source: &str, file: &str, line: u32, out: &mut Vec<u8>) {
     timestamp(time, out);
     wire::unsigned(2, level as u64, out);
@@ -176,7 +166,6 @@ pub fn put_log(time: u64, level: Level, text: &str, source: &str, file: &str, li
     wire::fixed32(6, line, out);
 }
 
-/// A link of the cell: a frame and its parent frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Link {
     pub name: String,
@@ -248,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn transforms_come_back() {
+    fn transforms_round_trip() {
         let place = Transform { position: [1.0, -2.0, 0.5], rotation: [0.0, 0.6, 0.0, 0.8] };
         let mut out = Vec::new();
         put_transform(1_000_000_002, "world", "arm", &place, &mut out);
@@ -262,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_line_to_the_byte() {
+    fn log_line_has_the_expected_bytes() {
         let mut out = Vec::new();
         put_log(1_000_000_002, Level::Error, "no", "Task", "", 7, &mut out);
         let expected: &[&[u8]] = &[

@@ -51,7 +51,6 @@ fn encode_field(number: u32, schema: &Schema, bytes: &[u8], out: &mut Vec<u8>) {
     }
 }
 
-/// Encode the variant and its value.
 fn encode_union(of: &UnionSchema, bytes: &[u8], out: &mut Vec<u8>) {
     let Some((code, carried)) = bytes.split_first() else { return };
     wire::unsigned(1, u64::from(*code), out);

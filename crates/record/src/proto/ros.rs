@@ -1,12 +1,7 @@
-//! Two ROS 2 messages in CDR: `sensor_msgs/msg/JointState`, which moves a robot description and provides curves
-//! by joint name, and `std_msgs/msg/String`, which contains the description.
-//!
-//! CDR here is little-endian with the four-byte header of XCDR1; every number is aligned to its size, counted from the
-//! end of the header.
+//! Two ROS 2 messages in CDR: `sensor_msgs/msg/JointState` and `std_msgs/msg/String` with the robot description. CDR
+//! here is little-endian with the four-byte header of XCDR1; every number is aligned to its size.
 
-/// Schema name of [`joint_state`].
 pub const JOINT_STATE: &str = "sensor_msgs/msg/JointState";
-/// Schema name of [`string`].
 pub const STRING: &str = "std_msgs/msg/String";
 
 /// Definition of [`JOINT_STATE`], including the messages to which it refers.
@@ -28,7 +23,6 @@ uint32 nanosec
 
 pub const STRING_DEFINITION: &str = "string data\n";
 
-/// Appends values to a CDR message.
 struct Cdr<'a> {
     out: &'a mut Vec<u8>,
     start: usize,
@@ -66,8 +60,7 @@ impl<'a> Cdr<'a> {
     }
 }
 
-/// Append a `JointState`: `time` in nanoseconds since 1970, positions in radians or metres; velocities and
-/// efforts stay empty, as the message allows.
+/// Append a `JointState`: `time` in ns since 1970, positions in radians or metres; velocities and efforts stay empty.
 pub fn joint_state(time: u64, names: &[String], positions: &[f64], out: &mut Vec<u8>) {
     let mut cdr = Cdr::new(out);
     cdr.number((time / 1_000_000_000) as u32);
@@ -80,7 +73,6 @@ pub fn joint_state(time: u64, names: &[String], positions: &[f64], out: &mut Vec
     cdr.doubles(&[]);
 }
 
-/// Append a `String`.
 pub fn string(text: &str, out: &mut Vec<u8>) {
     Cdr::new(out).text(text);
 }
@@ -90,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_string_to_the_byte() {
+    fn string_has_the_expected_bytes() {
         let mut out = Vec::new();
         string("<r/>", &mut out);
         assert_eq!(out, b"\x00\x01\x00\x00\x05\x00\x00\x00<r/>\x00");

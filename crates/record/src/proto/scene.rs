@@ -1,6 +1,6 @@
 //! `foxglove.SceneUpdate`: shapes, texts and lines that a viewer draws in frames.
 //!
-//! The numbers of fields are those of foxglove's schema repository. Primitives that this log never draws are omitted.
+//! Primitives that this log never draws are omitted.
 
 use prost_types::{DescriptorProto, EnumDescriptorProto, field_descriptor_proto::Type};
 
@@ -12,11 +12,9 @@ use super::{
 
 pub const SCENE_UPDATE: &str = "foxglove.SceneUpdate";
 
-/// Media type of a [`Primitive::Model`].
 const GLB: &str = "model/gltf-binary";
 
-/// Deletes all entities of a topic: `foxglove.SceneEntityDeletion.Type`.
-const ALL: u64 = 1;
+const ALL: u64 = 1; // deletes all entities of a topic: `foxglove.SceneEntityDeletion.Type`
 
 /// A colour: red, green, blue and opacity from 0 to 1.
 pub type Colour = [f64; 4];
@@ -37,22 +35,19 @@ pub enum Primitive<'a> {
 pub struct Entity<'a> {
     /// Its name: a later entity with the same name replaces it.
     pub id: &'a str,
-    /// The frame to which it is attached.
-    pub frame: &'a str,
+    pub frame: &'a str, // to which it is attached
     pub primitive: Primitive<'a>,
     /// Keys and values that a viewer shows for the selected entity.
     pub facts: &'a [(&'a str, String)],
 }
 
 impl<'a> Entity<'a> {
-    /// An entity without facts.
     #[must_use]
     pub const fn new(id: &'a str, frame: &'a str, primitive: Primitive<'a>) -> Self {
         Self { id, frame, primitive, facts: &[] }
     }
 }
 
-/// Descriptors of [`SCENE_UPDATE`].
 #[must_use]
 pub fn descriptor() -> Vec<u8> {
     let of = |name, number, kind: &str| typed_field(name, number, Type::Message, kind);

@@ -1,15 +1,11 @@
 //! The part of the protobuf wire format that a log uses.
 //!
-//! Zero values are written too: readers that treat an absent field as missing would otherwise interrupt a curve
-//! at zero.
+//! Zero values are written too: some readers would otherwise interrupt a curve at zero.
 
 const VARINT: u64 = 0;
-/// Wire type of eight bytes.
-const FIXED64: u64 = 1;
-/// Wire type of a length and the bytes after it.
-const BYTES: u64 = 2;
-/// Wire type of four bytes.
-const FIXED32: u64 = 5;
+const FIXED64: u64 = 1; // wire type of eight bytes
+const BYTES: u64 = 2; // wire type of a length and the bytes after it
+const FIXED32: u64 = 5; // wire type of four bytes
 
 /// Append a number in groups of seven bits, the lowest first.
 pub fn put_varint(mut value: u64, out: &mut Vec<u8>) {
@@ -22,7 +18,6 @@ pub fn put_varint(mut value: u64, out: &mut Vec<u8>) {
 
 /// Take a number from the front of `bytes`; `None` if it is incomplete or does not fit in 64 bits.
 pub fn take_varint(bytes: &mut &[u8]) -> Option<u64> {
-    // Most numbers have one byte.
     if let [byte @ 0..=0x7F, rest @ ..] = *bytes {
         *bytes = rest;
         return Some(u64::from(*byte));
@@ -49,7 +44,6 @@ pub const fn zigzag(value: i64) -> u64 {
     ((value << 1) ^ (value >> 63)).cast_unsigned()
 }
 
-/// Inverse of [`zigzag`].
 #[must_use]
 pub const fn unzigzag(value: u64) -> i64 {
     (value >> 1).cast_signed() ^ -((value & 1).cast_signed())
@@ -65,7 +59,6 @@ pub fn unsigned(field: u32, value: u64, out: &mut Vec<u8>) {
     put_varint(value, out);
 }
 
-/// A `sint32` field.
 pub fn signed(field: u32, value: i64, out: &mut Vec<u8>) {
     unsigned(field, zigzag(value), out);
 }
@@ -108,11 +101,9 @@ pub fn nested(field: u32, out: &mut Vec<u8>, body: impl FnOnce(&mut Vec<u8>)) {
 /// Fields of a message, in the order of the wire, up to the first malformed one.
 pub struct Fields<'a>(pub &'a [u8]);
 
-/// The value of a field on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Value<'a> {
     Number(u64),
-    /// Bytes, text, a message or a packed array.
     Bytes(&'a [u8]),
 }
 
@@ -161,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn varints_come_back() {
+    fn varints_round_trip() {
         for value in [0, 1, 127, 128, 300, u64::from(u32::MAX), u64::MAX] {
             let mut out = Vec::new();
             put_varint(value, &mut out);

@@ -12,20 +12,14 @@ use crate::{
     writer::{LogWriter, TickRecord},
 };
 
-/// Ticks of the runs: more than twelve parts of a log.
-const TICKS: u64 = 310;
+const TICKS: u64 = 310; // ticks of the runs: more than twelve parts of a log
 
-/// Differences between a log and the run, and the replayed part.
 #[derive(Clone, Debug)]
 struct Case {
-    /// Missing ticks, from one of them on.
-    gap: (u64, u64),
-    /// A second without recorded states.
-    without_states: u64,
-    /// A tick whose outputs were changed.
-    changed: Option<u64>,
-    /// A byte of the file that was changed.
-    damaged: Option<prop::sample::Index>,
+    gap: (u64, u64),                      // missing ticks, from one of them on
+    without_states: u64,                  // a second without recorded states
+    changed: Option<u64>,                 // a tick whose outputs were changed
+    damaged: Option<prop::sample::Index>, // a byte of the file that was changed
     from: Option<u64>,
     until: Option<u64>,
 }
