@@ -5,7 +5,6 @@
 use rcs_core::tick::TICK_S;
 use runtime::{Ending, LogTarget, Observer, Run, RunConfig, StartError, TickReport};
 
-/// Prints each line of the job when it begins.
 #[derive(Default)]
 struct Lines(usize);
 

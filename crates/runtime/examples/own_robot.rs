@@ -1,7 +1,5 @@
-//! A caller's own robot for the linkbar job: `cargo run --release -p runtime --example own_robot`.
-//!
-//! The robot reaches each point at once, and measures its path. A real one would forward the points and report
-//! its position. The rest of the cell is simulated, and the simulated arm follows the robot.
+//! A caller's own robot for the linkbar job: `cargo run --release -p runtime --example own_robot`. It reaches each
+//! point at once; the rest of the cell is simulated, and the simulated arm follows it.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 
@@ -17,8 +15,7 @@ use runtime::{Ending, LogTarget, OwnRobot, Run, RunConfig};
 struct Ideal {
     joints: Joints,
     at: Plate,
-    /// Length of the path so far, in.
-    path: Arc<Mutex<f64>>,
+    path: Arc<Mutex<f64>>, // length of the path so far, in
 }
 
 impl Robot for Ideal {

@@ -4,12 +4,10 @@ use std::{fmt::Display, str::FromStr};
 
 use serde::{Deserialize as _, Deserializer, Serializer, de::Error as _};
 
-/// Write a value as a string.
 pub fn serialize<T: Display, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(value)
 }
 
-/// Read a value from a string.
 pub fn deserialize<'de, T: FromStr<Err: Display>, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<T, D::Error> {
@@ -19,7 +17,6 @@ pub fn deserialize<'de, T: FromStr<Err: Display>, D: Deserializer<'de>>(
 pub mod option {
     use super::*;
 
-    /// Write a string, if there is a value.
     pub fn serialize<T: Display, S: Serializer>(value: &Option<T>, serializer: S) -> Result<S::Ok, S::Error> {
         match value {
             Some(value) => serializer.collect_str(value),
@@ -27,7 +24,6 @@ pub mod option {
         }
     }
 
-    /// Read a value, if there is a string.
     pub fn deserialize<'de, T: FromStr<Err: Display>, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Option<T>, D::Error> {
@@ -39,12 +35,10 @@ pub mod option {
 pub mod list {
     use super::*;
 
-    /// Write each value as a string.
     pub fn serialize<T: Display, S: Serializer>(values: &[T], serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(values.iter().map(ToString::to_string))
     }
 
-    /// Read each value from a string.
     pub fn deserialize<'de, T: FromStr<Err: Display>, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Vec<T>, D::Error> {

@@ -27,13 +27,10 @@ use crate::{
     observer::Observer,
 };
 
-/// Time limit for the start of the boards by this process, including the load of the task data.
-const STARTING: Duration = Duration::from_secs(60);
+const STARTING: Duration = Duration::from_secs(60); // including the load of the task data
 
 pub enum Controller {
-    /// All boards in this process.
     One(Box<Present>),
-    /// Boards in other processes.
     Split(Box<Coordinator>),
 }
 
@@ -81,11 +78,7 @@ impl Levels<TaskData<'_>> for Controller {
 }
 
 impl Controller {
-    /// Start the boards of the configuration. All boards are ready when this returns.
-    ///
-    /// # Errors
-    /// [`StartError::Interrupted`] if the run is interrupted before the boards are ready,
-    /// [`StartError::Boards`] if a board does not become ready.
+    /// Start the boards of the configuration; all are ready when this returns. Fails if the run is interrupted before.
     pub fn start(
         config: &RunConfig,
         name: &RunName,
@@ -126,8 +119,7 @@ impl Controller {
         Ok(Self::Split(Box::new(coordinator)))
     }
 
-    /// Wait for a replacement of a lost board. A board that was started by hand can be replaced by hand.
-    /// Returns false if the run must end.
+    /// Wait for a replacement of a lost board, perhaps by hand. Returns false if the run must end.
     pub fn replace(&mut self, lost: &Lost, config: &RunConfig, observer: &mut dyn Observer) -> bool {
         let Self::Split(coordinator) = self else { return false };
         if config.boards != Boards::Manual {
@@ -152,7 +144,6 @@ impl Controller {
         }
     }
 
-    /// Results of each board; `None` on one board.
     #[must_use]
     pub fn results(&self) -> Option<Vec<BoardResult>> {
         match self {
@@ -161,7 +152,6 @@ impl Controller {
         }
     }
 
-    /// Boards that lack some real-time settings.
     #[must_use]
     pub fn unpunctual(&self) -> Vec<Board> {
         match self {
@@ -209,8 +199,7 @@ pub fn fingerprint(store: &Store, job: &Job) -> Fingerprint {
     Fingerprint::of(crate::COMMIT, store.sources(), std::iter::once(job.source()).chain(reloads))
 }
 
-/// Start the process of a board. Its messages go to standard error, like those of this process; standard output
-/// is for the result.
+/// Start the process of a board. Its messages go to standard error; standard output is for the result.
 fn spawn(config: &RunConfig, name: &RunName, board: Board) -> std::io::Result<Child> {
     let mut command = Command::new(&config.program);
     command.args(["board", &board.number().to_string(), "--run", name.as_str()]);

@@ -1,7 +1,5 @@
-//! Changes of a run between two ticks: experiments with a recorded run ([`crate::repeat`]).
-//!
-//! A change takes effect in the next tick, and is written to the log. Changed task data are a new generation, so that a
-//! replay of the log finds them. Unlike those of a line `** load`, they do not wait for the end of a command.
+//! Changes of a run between two ticks, for experiments with a recorded run ([`crate::repeat`]). A change takes effect
+//! in the next tick and is logged. Changed task data are a new generation, and do not wait for the end of a command.
 
 use plant::fault::{What, text::FaultFile};
 use taskdata::load::{
@@ -16,15 +14,12 @@ use crate::{Run, event::Event, loads::insert};
 pub enum ChangeError {
     #[error("with this change the task data have errors:\n{0}")]
     Data(String),
-    /// A line `** load` is waiting for the end of a command.
     #[error("a reload of the job waits for the end of a command: change the task data in another tick")]
     Reload,
     #[error("another process commands this run: there is no job whose lines can be changed")]
     NoJob,
-    /// The job is at its last line.
     #[error("the job sends no command after tick {0}: name an earlier tick")]
     NoCommand(u64),
-    /// The line to the robot already has faults.
     #[error("the line to the robot has faults already: leave those of the line out of the file")]
     Line,
     #[error(
@@ -40,19 +35,15 @@ impl From<Box<Diagnostics>> for ChangeError {
 }
 
 impl Run {
-    /// Add these blocks to the task data from the next tick on. An entry replaces an existing one of the same
-    /// name, also in the middle of a command.
-    ///
-    /// # Errors
-    /// [`ChangeError::Data`], [`ChangeError::Reload`]. The run is then unchanged.
+    /// Add these blocks to the task data from the next tick on, also in the middle of a command. An entry replaces one
+    /// of the same name. On error, the run is unchanged.
     pub fn change_data(&mut self, source: Source) -> Result<(), ChangeError> {
         let generations = self.closed.generations();
         let reloads = insert(generations.current(), generations.reloads(), generations.done(), &source)?;
         if self.use_reloads(reloads) { Ok(()) } else { Err(ChangeError::Reload) }
     }
 
-    /// Add reloads from the next tick on. Returns false, and changes nothing, if a reload of the job waits for
-    /// the end of a command.
+    /// Add reloads from the next tick on. Returns false, without a change, if a reload waits for the end of a command.
     pub(crate) fn use_reloads(&mut self, reloads: Vec<Reload>) -> bool {
         let inserted = self.closed.generations_mut().insert(reloads);
         if inserted {
@@ -61,10 +52,7 @@ impl Run {
         inserted
     }
 
-    /// Enable the faults of a file, in the cell and on the line, from the next tick on.
-    ///
-    /// # Errors
-    /// [`ChangeError::Displaced`], [`ChangeError::Line`]. The run is then unchanged.
+    /// Enable the faults of a file from the next tick on. On error, the run is unchanged.
     pub fn add_faults(&mut self, faults: &FaultFile, seed: u64) -> Result<(), ChangeError> {
         let moves = faults.cell.faults.iter().find(|fault| matches!(fault.what, What::PedestalMoved { .. }));
         if let Some(fault) = moves {
@@ -87,9 +75,6 @@ impl Run {
     }
 
     /// Insert a line before the next one of the job.
-    ///
-    /// # Errors
-    /// [`ChangeError::NoJob`].
     pub fn insert_line(&mut self, line: JobLine) -> Result<(), ChangeError> {
         let text = format!("a line of the job more: {}", line.text);
         self.neighbours.job_player().ok_or(ChangeError::NoJob)?.insert(line);
@@ -97,10 +82,6 @@ impl Run {
         Ok(())
     }
 
-    /// Replace the next command of the job by a line.
-    ///
-    /// # Errors
-    /// [`ChangeError::NoJob`], [`ChangeError::NoCommand`].
     pub fn replace_command(&mut self, line: JobLine) -> Result<(), ChangeError> {
         let text = format!("the next command of the job is another one: {}", line.text);
         if !self.neighbours.job_player().ok_or(ChangeError::NoJob)?.replace_command(line) {

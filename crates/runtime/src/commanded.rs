@@ -8,8 +8,8 @@
 //!            └──── `workstation`: robot at HOME, PAUSE last, Data System connected ◄──────────┘
 //! ```
 //!
-//! The numbers of the commands form one sequence. While an operator commands, the workstation controller reads
-//! an initialized status mailbox, like one that has connected too early, and its commands are not executed.
+//! The numbers of the commands form one sequence. While an operator commands, the workstation controller reads an
+//! initialized status mailbox, and its commands are not executed.
 
 use closed_loop::{JobPlayer, workstation::SimulatedWorkstation};
 use interfaces::{CommonMemory, TaskOutputs, hws::HwsReport};
@@ -27,7 +27,6 @@ use crate::{
     switched::obstacle,
 };
 
-/// A workstation controller in another process, which an operator can replace temporarily.
 pub struct Commanded {
     pub(crate) outside: OutsideWorkstation,
     /// Sends the operator's commands; `None` while the workstation controller commands.
@@ -36,19 +35,16 @@ pub struct Commanded {
 }
 
 impl Commanded {
-    /// Start with the workstation controller in command.
     #[must_use]
     pub const fn new(endpoint: Endpoint) -> Self {
         Self { outside: OutsideWorkstation::new(endpoint), alone: None, before: Vec::new() }
     }
 
-    /// True if an operator commands.
     #[must_use]
     pub const fn is_stand_alone(&self) -> bool {
         self.alone.is_some()
     }
 
-    /// The emulator that sends the operator's commands, if an operator commands.
     pub fn job_under_way(&mut self) -> Option<&mut Hwsc> {
         self.alone.as_mut().map(|emulator| &mut emulator.hwsc)
     }
@@ -72,7 +68,6 @@ impl Commanded {
         [&self.before, self.begun_steps()].concat()
     }
 
-    /// Called once per tick, after controller and cell.
     pub fn step(
         &mut self,
         tick: Tick,
@@ -96,10 +91,7 @@ impl Commanded {
         Progress::Running
     }
 
-    /// Give the command to an operator.
-    ///
-    /// # Errors
-    /// A sentence with the reason if that is not possible.
+    /// Give the command to an operator. Errors: the reason, as a sentence.
     pub fn take_command(
         &mut self,
         tick: Tick,
@@ -131,10 +123,7 @@ impl Commanded {
         Ok("the workstation controller commands no more; `workstation` gives the command back".to_owned())
     }
 
-    /// Give the command to the workstation controller.
-    ///
-    /// # Errors
-    /// A sentence with the reason if that is not possible.
+    /// Give the command to the workstation controller. Errors: the reason, as a sentence.
     pub fn give_command(
         &mut self,
         tick: Tick,

@@ -1,19 +1,16 @@
-//! The findings in the data of a run that do not prevent it. The run reports their number, and `rcs-run check`
-//! shows them; only the latter, with its complete check, has warnings about motions.
+//! Findings that do not prevent a run. The run reports their number, and `rcs-run check` shows them, with warnings
+//! about motions that only it has.
 
 use diagnostics::{Diagnostic, Diagnostics};
 use os_io::text::amount;
 
-/// Numbers of findings that do not prevent a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Findings {
-    /// Task data, including forms that do not fit the cell.
-    data: Count,
+    data: Count, // Task data, including forms that do not fit the cell
     job: Count,
     cell: Count,
 }
 
-/// Numbers of errors and warnings in a source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Count {
     errors: usize,
@@ -41,10 +38,7 @@ fn line(count: usize, one: &str, source: &str) -> Option<String> {
 }
 
 impl Findings {
-    /// The findings in task data and job, in the cell description with the task data, and in the job with the cell.
-    ///
-    /// Task data with errors are not compared with the cell, as in `check`: a difference may only be a
-    /// consequence of the error.
+    /// Task data with errors are not compared with the cell: a difference may only be a consequence of the error.
     #[must_use]
     pub fn of(data: &Diagnostics, job: &Diagnostics, of_cell: &Diagnostics, of_job: &Diagnostics) -> Self {
         let is_sound = !data.has_errors();

@@ -1,8 +1,8 @@
 //! The verdict on a command before Task reads it, for all sources of commands: the job, an operator, the mailbox of a
 //! workstation controller.
 //!
-//! A command passes if the task data have what it needs ([`Verdict`]), and if `check` has found no error in the
-//! records that it uses. `--unchecked` disables the second condition. PAUSE always passes.
+//! A command passes if the task data have all that it needs ([`Verdict`]), and `check` has found no error in its
+//! records, which `--unchecked` permits. PAUSE always passes.
 
 use closed_loop::{JobPlayer, generations::Generations, workstation::SimulatedWorkstation};
 use diagnostics::{Blame, Group, grouped};
@@ -26,13 +26,11 @@ use taskdata::load::{
 
 use crate::{error::StartError, event::Event};
 
-/// Judges the commands of a tick.
 #[derive(Clone, Copy)]
 pub struct CommandJudge<'a> {
     pub generations: &'a Generations,
     /// Number of the first reload that the job has requested in this tick.
     pub load: Option<u32>,
-    /// Common memory after the tick.
     pub memory: &'a CommonMemory,
     /// Ignore errors in the records that a command uses.
     pub unchecked: bool,
@@ -44,8 +42,7 @@ impl Judge for CommandJudge<'_> {
     }
 }
 
-/// The error in a command of a robot at the place in `present`, as a sentence; `None` if it passes. `unchecked`
-/// ignores errors in the records that it uses.
+/// The error in a command of a robot at `present`, as a sentence. `unchecked` ignores errors in its records.
 #[must_use]
 pub fn verdict(command: &HwsCommand, store: &Store, present: &Present, unchecked: bool) -> Option<String> {
     let verdict = Verdict::of(command, &store.view(), Before::unknown());
@@ -119,7 +116,6 @@ pub fn play(
     progress
 }
 
-/// The reason why a command with errors in its data is refused, if it has any.
 fn of_faults(faults: &[&Fault]) -> Option<String> {
     let (first, others) = faults.split_first()?;
     let more = match others.len() {
@@ -130,8 +126,8 @@ fn of_faults(faults: &[&Fault]) -> Option<String> {
     Some(format!("{}{more}", first.in_line()))
 }
 
-/// Find the errors in the paths of a job, and add each to the task data as an error of the record that is
-/// probably wrong, so that no command uses that record.
+/// Find the errors in the paths of a job. Each becomes an error of the record that is probably wrong, so that no
+/// command uses it.
 pub fn add_paths(store: &mut Store, job: &mut Job, cell: &CellDescription) -> WalkedJob {
     let walked = walk_job_once(job, store, &Room::new(cell));
     let expected = |line: u32| job.steps.iter().any(|step| step.line == line && step.expects_error);
@@ -144,7 +140,6 @@ pub fn add_paths(store: &mut Store, job: &mut Job, cell: &CellDescription) -> Wa
     walked
 }
 
-/// The errors of paths as errors of records: one for each record that is probably wrong.
 fn path_faults(findings: &[&Finding], store: &Store) -> Vec<Fault> {
     let named = |finding: &&&Finding| !finding.data.is_empty();
     let findings: Vec<&Finding> = findings.iter().filter(named).copied().collect();
@@ -166,9 +161,6 @@ fn path_faults(findings: &[&Finding], store: &Store) -> Vec<Fault> {
 }
 
 /// Check that no command of a job uses a record with an error.
-///
-/// # Errors
-/// [`StartError::WrongData`] with each command and its first error.
 pub fn check_job(job: &Job, store: &Store, walked: Option<&WalkedJob>) -> Result<(), StartError> {
     let mut current = store;
     let mut wrong = Vec::new();

@@ -1,11 +1,6 @@
-//! LOAD during a run (IV.2.4): a block of the run's data directory, in the present version of its file, becomes
-//! part of the task data before the next command. First all boards check the whole data with the block. An
-//! operator requests the load, or the workstation controller with a line for the cell.
-//!
-//! On the 40 ms grid the check runs in parallel to the ticks. In fast clock the next tick waits for the check,
-//! so that a run does not depend on the speed of the machine.
-//!
-//! The log contains the text, so that a replay, and a repetition with the same inputs, load the same block.
+//! LOAD during a run (IV.2.4): a block of the data directory, in its present version, becomes part of the task data
+//! before the next command, after all boards have checked the whole data with it. The check runs in parallel to the
+//! ticks; in fast clock the next tick waits for it. The log contains the text, for a replay.
 
 pub mod error;
 
@@ -32,12 +27,10 @@ use crate::{
 pub use self::error::LoadError;
 use self::error::PATIENCE;
 
-/// The same time limit in ticks.
-const BOARDS_LIMIT: u64 = PATIENCE.as_secs() * 1000 / TICK_MS;
+const BOARDS_LIMIT: u64 = PATIENCE.as_secs() * 1000 / TICK_MS; // the same time limit in ticks
 /// Time between two checks of the boards, when the run waits for them.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// Source of a load, which receives the answer.
 pub enum Asker {
     Operator(Input),
     /// The workstation controller, with this line for the cell.
@@ -46,14 +39,12 @@ pub enum Asker {
 
 pub type Answer = (Asker, Result<String, LoadError>);
 
-/// Loads and jobs requested during a run.
 #[derive(Default)]
 pub struct Loads {
     /// Thread that reads and checks in parallel to the ticks; `None` in fast clock.
     loader: Option<Loader>,
     loading: Option<Loading>,
-    /// Number of the last load that was announced to boards in other processes.
-    last: u32,
+    last: u32, // number of the last load that was announced to boards in other processes
     /// Number of jobs that have replaced the rest of an earlier job.
     pub played: u32,
 }
@@ -78,7 +69,6 @@ impl Loads {
     }
 }
 
-/// A load without an answer yet.
 struct Loading {
     asker: Asker,
     number: BlockNumber,
@@ -87,16 +77,11 @@ struct Loading {
 }
 
 enum Stage {
-    /// The thread of the run reads and checks.
     Checking,
-    Announced {
-        loaded: Loaded,
-        since: Tick,
-    },
+    Announced { loaded: Loaded, since: Tick },
 }
 
 impl Run {
-    /// Check that a block can be loaded now.
     fn can_load(&self) -> Result<(), LoadError> {
         if self.loads.loading.is_some() {
             return Err(LoadError::Loading);
@@ -193,8 +178,7 @@ impl Run {
         }
     }
 
-    /// Announce the file to the boards in other processes, which check it. Returns the number of the load;
-    /// `None` on one board.
+    /// Announce the file to the boards in other processes. Returns the number of the load; `None` on one board.
     fn announce(&mut self) -> Option<u32> {
         let load = self.loads.last.saturating_add(1);
         self.coordinator()?.announce(load);
@@ -208,7 +192,6 @@ impl Run {
 
     /// Withdraw an announced load, so that a board that joins later does not read it.
     fn take_back(&self, why: LoadError) -> LoadError {
-        // Otherwise the file is removed with the run.
         let _ = fs::remove_file(load_file(&self.name, self.loads.last));
         why
     }

@@ -2,16 +2,15 @@
 //!
 //! ```text
 //!   operator: load ──► thread of the run: reads the block, checks all data with it, writes the file
-//!                                │
-//!                                ▼  the number of the file comes with the pulse
-//!                                ▼  the pulse carries the number of the file
-//!                                │
-//!                                ▼  its report has the fingerprint of its data
+//!                                │  the number of the file, with the pulse
+//!                                ▼
+//!                      thread of each board: reads the file, checks all data with it
+//!                                │  the fingerprint of its data, in its report
+//!                                ▼
 //!                      all boards have the same data: the generation is valid from the next tick on
 //! ```
 //!
-//! On one board the middle step is omitted. The threads start before the process requests real-time priority, and keep
-//! their ordinary priority.
+//! On one board the middle step is omitted. The threads start before the real-time requests, with ordinary priority.
 
 use std::{
     fs, io,
@@ -40,8 +39,7 @@ use taskdata::{
 
 use crate::load::error::LoadError;
 
-/// Read `load OFFSET BLOCK` (IV.2.4); `None` if the words begin something else. With another word after it, the
-/// text is a line of a job, whose reader reports the error.
+/// Read `load OFFSET BLOCK` (IV.2.4); `None` if the words begin something else, such as a line of a job.
 #[must_use]
 pub fn asked(words: &[&str]) -> Option<Result<BlockNumber, String>> {
     let ["load", offset, block] = words else { return None };
@@ -50,11 +48,8 @@ pub fn asked(words: &[&str]) -> Option<Result<BlockNumber, String>> {
     Some(numbers.map(|(offset, number)| BlockNumber { offset, number }).ok_or_else(expected))
 }
 
-/// Insert a reload into the reloads of a run, after the first `done` ones, which have led to `base`. The later
-/// ones are loaded on top of it.
-///
-/// # Errors
-/// The report of the first reload that now has errors.
+/// Insert a reload after the first `done` reloads, which have led to `base`; later ones are loaded on top of it.
+/// Errors: the report of the first reload that now has errors.
 pub fn insert(
     base: &Store,
     reloads: &[Reload],
@@ -71,12 +66,10 @@ pub fn insert(
     Ok(all)
 }
 
-/// A block that has been checked.
 pub struct Loaded {
     /// All reloads of the run, including this one.
     pub reloads: Vec<Reload>,
-    /// Number of reloads before it.
-    pub done: usize,
+    pub done: usize, // reloads before it
     /// [`Fingerprint::data`] of the task data with the block.
     pub data: u64,
 }
@@ -85,7 +78,6 @@ pub struct Order {
     pub number: BlockNumber,
     /// Text of the block, if it is not from the directory.
     pub source: Option<Source>,
-    /// The directory of the run's task data.
     pub directory: PathBuf,
     pub base: Store,
     pub reloads: Vec<Reload>,
@@ -98,9 +90,6 @@ pub struct Order {
 
 impl Order {
     /// Read the block, check all data with it, and write the file for the boards.
-    ///
-    /// # Errors
-    /// [`LoadError`].
     pub fn carry_out(self) -> Result<Loaded, LoadError> {
         let Self { number, source, directory, base, reloads, done, file, inside } = self;
         let is_recorded = source.is_some();
@@ -132,7 +121,6 @@ fn fingerprint(store: &Store) -> u64 {
     Fingerprint::of("", store.sources(), []).data
 }
 
-/// Write the file for the boards.
 fn write(path: &Path, done: usize, source: &Source) -> io::Result<()> {
     replace(path, format!("{done} {}\n{}", source.name, source.text).as_bytes())
 }
@@ -145,17 +133,13 @@ fn read(path: &Path) -> Option<(usize, Source)> {
     Some((done.parse().ok()?, Source { name: name.to_owned(), text: text.into() }))
 }
 
-/// The thread that reads and checks blocks for a run.
 pub struct Loader {
     orders: Sender<Order>,
     done: Receiver<Result<Loaded, LoadError>>,
 }
 
 impl Loader {
-    /// Start the thread; it ends with the run.
-    ///
-    /// # Errors
-    /// The error of the system.
+    /// Start the thread; it ends with the run. Errors are those of the system.
     pub fn start() -> io::Result<Self> {
         let (orders, received) = channel::<Order>();
         let (sender, done) = channel();
@@ -171,7 +155,6 @@ impl Loader {
     }
 
     pub fn begin(&self, order: Order) {
-        // If the thread has ended, the next `look` returns an error.
         let _ = self.orders.send(order);
     }
 
@@ -203,10 +186,7 @@ pub struct BoardFiles {
 }
 
 impl BoardFiles {
-    /// Start with the reloads of the job, and start the checking thread.
-    ///
-    /// # Errors
-    /// The error of the system.
+    /// Start with the reloads of the job, and start the checking thread. Errors are those of the system.
     pub fn new(run: &RunName, store: Store, reloads: Vec<Reload>) -> io::Result<Self> {
         let (orders, received) = channel::<(u32, Reloads)>();
         let (sender, done) = channel();
@@ -243,7 +223,7 @@ impl BoardFiles {
     }
 }
 
-/// The reloads with the one of a file; `None` if the file does not exist or has errors.
+/// The reloads, with that in a file; `None` if the file does not exist or has errors.
 fn with_load(run: &RunName, first: &Store, reloads: &[Reload], load: u32) -> Option<(Reloads, u64)> {
     let (done, source) = read(&load_file(run, load))?;
     let base = match done.checked_sub(1) {
@@ -270,7 +250,6 @@ impl BoardData for BoardFiles {
     fn check(&mut self, load: u32) -> Checked {
         if load != self.asked {
             self.asked = load;
-            // If the thread has ended, the load is never checked, and the run reports it.
             let _ = self.orders.send((load, Arc::clone(&self.reloads)));
         }
         while let Ok((load, made)) = self.done.try_recv() {

@@ -1,8 +1,5 @@
-//! The neighbours of a run: the source of Task's commands, the Data System, and, if they are other processes,
-//! Active Pedestal and vision.
-//!
-//! A neighbour runs in this process, or in another one behind the network. The run reaches both through
-//! mailboxes. In fast clock, which runs both in lock step, the results are equal bit for bit.
+//! The neighbours of a run: the source of Task's commands, the Data System, Active Pedestal and vision. A neighbour
+//! runs in this or another process, and is reached through mailboxes. In fast clock, results are bit-identical.
 
 mod command;
 
@@ -40,16 +37,13 @@ use crate::{
 };
 
 pub enum WorkstationSource {
-    /// The emulator of the workstation controller, with a job.
     Emulator(Box<JobPlayer>),
-    /// A workstation controller in another process.
     Outside(Box<Commanded>),
     /// The emulator, whose job transfers the command to a workstation controller in another process.
     Switched(Box<Switched>),
 }
 
 impl WorkstationSource {
-    /// True if another process commands.
     #[must_use]
     pub fn outside(endpoint: Endpoint) -> Self {
         Self::Outside(Box::new(Commanded::new(endpoint)))
@@ -58,19 +52,15 @@ impl WorkstationSource {
 
 pub struct Neighbours {
     pub(crate) workstation: WorkstationSource,
-    /// The Data System; `None` if the run keeps the items itself.
-    data_system: Option<DataSystem>,
+    data_system: Option<DataSystem>, // the Data System; `None` if the run keeps the items itself
     /// `None` if the controller contains the processes of the pedestal.
     pedestal: Option<Box<pedestal::Agent>>,
     /// The port of vision. Without it, the cell analyses its pictures itself.
     vision: Option<vision::Port>,
-    /// Accepts neighbours during the run; `None` if no neighbour is another process.
     pub(crate) network: Option<Network>,
     pub(crate) events: Vec<Event>,
-    /// True to ignore errors in the records that a command uses.
-    unchecked: bool,
-    /// True if no more commands are accepted.
-    is_ending: bool,
+    unchecked: bool, // true to ignore errors in the records that a command uses
+    is_ending: bool, // true if no more commands are accepted
 }
 
 impl Neighbours {
@@ -95,19 +85,13 @@ impl Neighbours {
         }
     }
 
-    /// Also execute commands that use records with errors.
     #[must_use]
     pub fn unchecked(self, unchecked: bool) -> Self {
         Self { unchecked, ..self }
     }
 
-    /// Wait for neighbours in other processes, until the time limit or an interruption, which the run handles.
-    /// On the 40 ms grid the run waits only for the workstation controller; the others may connect later. In
-    /// fast clock a run ends when one disconnects, also before the first tick. `say` receives the phrase for
-    /// programs that search for the run.
-    ///
-    /// # Errors
-    /// [`StartError::NoWorkstation`].
+    /// Wait for neighbours in other processes, until the time limit or an interruption. On the 40 ms grid only for the
+    /// workstation controller; in fast clock a run ends when one disconnects. `say` receives the run's state.
     pub fn gather(
         &self,
         config: &RunConfig,
@@ -154,7 +138,6 @@ impl Neighbours {
         self.is_ending = true;
     }
 
-    /// True if the run is about to end, so that no more commands are accepted.
     #[must_use]
     pub const fn is_ending(&self) -> bool {
         self.is_ending
@@ -177,10 +160,7 @@ impl Neighbours {
         }
     }
 
-    /// The job, if it is the present source of commands.
-    ///
-    /// # Errors
-    /// A sentence that names the present source.
+    /// The job, if it is the present source of commands. Errors: a sentence that names the present source.
     pub fn job_under_way(&mut self) -> Result<&mut Hwsc, String> {
         if self.is_ending {
             return Err("the run is about to end".to_owned());
@@ -215,7 +195,6 @@ impl Neighbours {
         }
     }
 
-    /// True if another process may command temporarily.
     #[must_use]
     pub const fn can_switch(&self) -> bool {
         matches!(self.workstation, WorkstationSource::Switched(_))
@@ -227,14 +206,12 @@ impl Neighbours {
         self.data_system.as_ref().map(DataSystem::status).unwrap_or_default()
     }
 
-    /// The last statuses of a pedestal in another process.
     #[must_use]
     pub fn pedestal(&self) -> &OutsidePedestal {
         self.pedestal.as_deref().map_or(&OutsidePedestal::ZERO, pedestal::Agent::sent)
     }
 
-    /// Before the first tick: the pedestal reads the initial buffers, so that it runs from the controller's
-    /// first tick on, and the connection of a Data System is recorded.
+    /// Before the first tick: the pedestal reads the initial buffers, and a Data System's connection is recorded.
     pub fn begin(&mut self, memory: &CommonMemory, inputs: &DeviceInputs) {
         self.data_system.iter().for_each(|system| system.keeper().look());
         self.step_pedestal(Tick::BEFORE_START, memory, inputs);
@@ -256,7 +233,6 @@ impl Neighbours {
         self.events.extend(port.remarks().into_iter().map(Event::from));
     }
 
-    /// Steps of the job so far, or commands of the workstation controller.
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {
         match &self.workstation {
@@ -286,7 +262,6 @@ impl Neighbours {
         }
     }
 
-    /// The commands of the job that failed and were repeated.
     #[must_use]
     pub fn retried(&self) -> &[Retry] {
         match &self.workstation {
@@ -339,18 +314,15 @@ impl Neighbours {
         progress
     }
 
-    /// The events since the last call.
     pub fn events(&mut self) -> Vec<Event> {
         std::mem::take(&mut self.events)
     }
 
-    /// A Data System outside the run.
     pub const fn data_system(&mut self) -> Option<&mut DataSystem> {
         self.data_system.as_mut()
     }
 }
 
-/// Properties of a part in the camera picture, in the form of the mailbox.
 fn pictured(subject: &Subject) -> Part {
     let face = subject.face();
     Part {
@@ -361,7 +333,6 @@ fn pictured(subject: &Subject) -> Part {
     }
 }
 
-/// The missing neighbours, as a phrase.
 fn waits_for(missing: &[&EndpointHandle], config: &RunConfig) -> String {
     let roles: Vec<_> = missing.iter().map(|handle| handle.role().to_string()).collect();
     let address = config.network.as_ref().map_or_else(String::new, |address| format!(" at {address}"));

@@ -10,10 +10,8 @@ use crate::event::Event;
 #[non_exhaustive]
 pub struct TickReport<'a> {
     pub tick: Tick,
-    /// Number of the job's last begun line, 0 before the first.
-    pub line: usize,
-    /// Number of lines of the job.
-    pub lines: usize,
+    pub line: usize,  // last begun one, 0 before the first
+    pub lines: usize, // of the job
     /// Steps that have begun, in order: the first PAUSE, lines of the job and their repetitions, commands of operators.
     pub steps: &'a [BegunStep],
     pub hws: &'a HwsCommand,
@@ -21,8 +19,7 @@ pub struct TickReport<'a> {
     pub memory: &'a CommonMemory,
 }
 
-/// Receives messages, events and each tick. Calls happen between ticks and delay the next one. `()` ignores all
-/// of them.
+/// Receives messages, events and each tick, between ticks; it delays the next one. `()` ignores all of them.
 pub trait Observer {
     /// A message for the operator: one line, without newline.
     fn message(&mut self, text: &str) {

@@ -1,8 +1,7 @@
 //! A workstation controller in another process: its mailboxes, and the commands that a run stores.
 //!
-//! It also commands the simulated cell: actions of the workstation are lines of a job, in a separate mailbox. A
-//! run in fast clock ends when its workstation controller disconnects, and has failed if this happens during a
-//! command. On the 40 ms grid the robot waits until it connects again.
+//! It also commands the simulated cell, with lines of a job in a separate mailbox. In fast clock the run ends when it
+//! disconnects, and has failed if this happens during a command. On the 40 ms grid the robot waits.
 
 use closed_loop::workstation::SimulatedWorkstation;
 use interfaces::{HwsCommand, TaskOutputs, Unconfirmed, hws::HwsReport};
@@ -30,27 +29,19 @@ use crate::{
 /// Number of stored commands, so that a run of a year does not exhaust the memory.
 const REMEMBERED: usize = 10_000;
 
-/// A workstation controller in another process.
 pub struct OutsideWorkstation {
     endpoint: Endpoint,
-    /// Mailgram number of the last line for the cell.
-    line_read: u16,
+    line_read: u16, // mailgram number of the last line for the cell
     line: u16,
-    /// The reason why that line was refused.
-    refused: Option<String>,
-    /// The requested block, until the run begins to load it.
-    load: Option<(BlockNumber, String)>,
-    /// Number of the line whose load is unanswered.
-    loading: Option<u16>,
+    refused: Option<String>,             // the reason why that line was refused
+    load: Option<(BlockNumber, String)>, // the requested block, until the run begins to load it
+    loading: Option<u16>,                // number of the line whose load is unanswered
     begun_steps: Vec<BegunStep>,
     began: Tick,
-    /// True if it has been connected in a tick.
-    came: bool,
+    came: bool, // true if it has been connected in a tick
     here: bool,
-    /// True if it has used the joystick box or the rotary table's panel since it connected.
-    by_hand: bool,
-    /// The reason why the last connection ended.
-    disconnect: Option<Disconnect>,
+    by_hand: bool, // true if it has used the joystick box or the rotary table's panel since it connected
+    disconnect: Option<Disconnect>, // the reason why the last connection ended
 }
 
 impl OutsideWorkstation {
@@ -102,7 +93,6 @@ impl OutsideWorkstation {
         self.refused = None;
     }
 
-    /// The commands accepted since the last call.
     pub fn take_steps(&mut self) -> Vec<BegunStep> {
         std::mem::take(&mut self.begun_steps)
     }
@@ -119,8 +109,7 @@ impl OutsideWorkstation {
         }
     }
 
-    /// Called once per tick while an operator or the job commands. It may connect and disconnect, but reads no
-    /// status, and its commands are not read.
+    /// Once per tick while an operator or the job commands. It may connect, but its commands are not read.
     pub fn attend(&mut self, tick: Tick, workstation: &mut SimulatedWorkstation, events: &mut Vec<Event>) {
         for place in [HWSC_STATUS, CELL_STATUS] {
             self.endpoint.outgoing(place).initialize();
@@ -153,7 +142,6 @@ impl OutsideWorkstation {
         presence
     }
 
-    /// Called once per tick, after controller and cell.
     pub fn step(
         &mut self,
         tick: Tick,
@@ -189,7 +177,6 @@ impl OutsideWorkstation {
         gone && self.endpoint.clock() == ClockKind::Fast
     }
 
-    /// The end of a run whose workstation controller has disconnected.
     fn end(&self, command: &HwsCommand, task: &TaskOutputs, workstation: &SimulatedWorkstation) -> Progress {
         if let Some(emergency) = workstation.emergency() {
             return Progress::Failed(JobFailure::Emergency(emergency));
@@ -225,7 +212,6 @@ impl OutsideWorkstation {
         }
     }
 
-    /// Follow the last command to its end.
     fn follow(&mut self, tick: Tick, command: &HwsCommand, task: &TaskOutputs) {
         let Some(step) = self.begun_steps.last_mut() else { return };
         if step.outcome != Outcome::Executing || task.status.echo != command.number {

@@ -12,14 +12,13 @@ use depc::{
 };
 use plant::t3::explained;
 
-/// A robot instead of the T3, for [`Run::with_robot`](crate::Run::with_robot).
+/// A robot instead of the T3, for [`Run::with_robot`](crate::Run::with_robot). In a tick: [`advance`](Self::advance),
+/// at most one point ([`Robot::accept`]) or request for the present position ([`Robot::present`]),
+/// [`position`](Self::position).
 ///
-/// The calls of a tick are first [`advance`](Self::advance), then at most one point ([`Robot::accept`]) or
-/// request for the present position ([`Robot::present`]), then [`position`](Self::position).
-///
-/// The robot is supervised while it moves (docs/design/link.md "Following"): T3 Interface compares `position` with the
-/// path of the last points. A robot that is off this path receives no further point, and [`Robot::stop`] is called
-/// once. It must stop in place, and [`Robot::present`] must return that position from then on.
+/// The robot is supervised (docs/design/link.md "Following"): one that is off the path of the last points gets no
+/// further point, and [`Robot::stop`] is called once. It must stop in place, and [`Robot::present`] must return that
+/// position.
 pub trait OwnRobot: Robot {
     /// A tick of 40 ms begins: move towards the last accepted point.
     fn advance(&mut self);
@@ -27,23 +26,19 @@ pub trait OwnRobot: Robot {
     /// Position of the end plate, if known. The arm of the simulated cell, and everything that it carries, follows it.
     fn position(&self) -> Option<Plate>;
 
-    /// Time by which the robot is expected to lag behind its points, at most 1 s, including the 80 ms of the
-    /// simulated arm, which follows it and has the resolvers. A robot that is more than 0.5 in off the path of
-    /// this time is stopped.
+    /// Expected lag behind the points, at most 1 s, including the 80 ms of the simulated arm, which follows the robot.
+    /// A robot that is more than 0.5 in off the path of this time is stopped.
     fn lag(&self) -> Duration {
         Duration::from_millis(LAG_MS.into())
     }
 }
 
-/// The robot with its DEPC function.
 pub struct OwnPort {
     robot: Box<dyn OwnRobot>,
     function: Controller,
     outputs: ControllerOutputs,
-    /// True from a stop of the robot to the start of the next path.
-    held: bool,
-    /// The warning of this tick, if it is new.
-    news: Option<Warning>,
+    held: bool,            // true from a stop of the robot to the start of the next path
+    news: Option<Warning>, // the warning of this tick, if it is new
 }
 
 impl OwnPort {
@@ -57,8 +52,8 @@ impl OwnPort {
         RobotInputs { rx: self.outputs.tx, ready: self.outputs.dtr, unsent: false, resolvers: None }
     }
 
-    /// After the controller's tick: pass the host's bytes to the function, or stop the robot in place. The
-    /// function starts again whenever the robot reports no trouble.
+    /// After the controller's tick: pass the host's bytes to the function, which starts again without trouble, or stop
+    /// the robot.
     pub fn send(&mut self, tx: &LinkBytes, hold: bool) {
         self.robot.advance();
         if hold && !self.held {

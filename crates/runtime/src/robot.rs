@@ -1,11 +1,6 @@
-//! The other end of the DEPC line: the T3 controller of the simulated cell, a robot at a serial port, or a
-//! robot with EGM or a robot of the caller, with a DEPC function in this process.
-//!
-//! With the simulated controller, the bytes of a tick pass through the fault injector, if there is a fault
-//! plan, and then through the cell. With a serial port they go to the port; the rest of the cell (gripper,
-//! camera, tray, vise, resolvers) is still simulated, and follows the position that the robot has acknowledged.
-//! A robot with EGM reports its position, which the cell follows and the resolvers read. A robot with EGM or of
-//! the caller can be stopped in place.
+//! The other end of the DEPC line: the T3 controller of the simulated cell (through the fault injector), a robot at a
+//! serial port, or one with EGM or of the caller, with a DEPC function here. The rest of the cell is still simulated,
+//! and follows the position that the robot has acknowledged or reported.
 
 use std::{
     sync::atomic::Ordering,
@@ -26,30 +21,23 @@ use rcs_core::tick::TICK_MS;
 
 use crate::{config::RunConfig, egm::EgmPort, observer::Observer, own::OwnPort};
 
-/// Length of a tick.
-const PERIOD: Duration = Duration::from_millis(TICK_MS);
+const PERIOD: Duration = Duration::from_millis(TICK_MS); // length of a tick
 
 pub enum Robot {
-    /// The T3 controller in the simulated cell.
     Simulated,
-    /// A robot controller at a serial port.
     Serial(Port),
     Egm(Box<EgmPort>),
-    /// A robot that the caller of the library provides.
     Own(OwnPort),
 }
 
 /// A serial line, with its measurements.
 pub struct Port {
     line: SerialLine,
-    /// Time when the last data command was written to the port.
-    sent: Option<Instant>,
-    /// Deviation of the time between two data commands from a tick, ns.
-    deviations: Box<Histogram>,
+    sent: Option<Instant>,      // time when the last data command was written to the port
+    deviations: Box<Histogram>, // deviation of the time between two data commands from a tick, ns
 }
 
 impl Port {
-    /// The robot controller at this line.
     #[must_use]
     pub fn new(line: SerialLine) -> Self {
         Self { line, sent: None, deviations: Box::default() }
@@ -74,7 +62,6 @@ impl Port {
         (!self.line.is_there()).then(|| format!("the port {} has disappeared", self.line.path().display()))
     }
 
-    /// Counts of bytes of the port.
     #[must_use]
     pub const fn counts(&self) -> SerialCounts {
         self.line.counts()
@@ -88,8 +75,7 @@ impl Port {
 }
 
 impl Robot {
-    /// Wait until the robot controller at a port has switched DTR on, until the time limit or an interruption.
-    /// Without DTR the run begins, and fails with a reason that names DTR.
+    /// Wait until the robot controller at a port has switched DTR on. Without DTR the run begins, and fails.
     pub fn gather(&mut self, config: &RunConfig, observer: &mut dyn Observer) {
         let port = match self {
             Self::Simulated | Self::Own(_) => return,
@@ -132,8 +118,8 @@ impl Robot {
         }
     }
 
-    /// After the controller's tick: send over the line. `exact` gives Prim's commanded tool frame, as T3I
-    /// receives it and exactly; it is called only for a robot with EGM. Its time is part of the tick.
+    /// After the controller's tick, as part of it: send over the line. `exact` gives Prim's commanded tool frame,
+    /// rounded and exact, for EGM.
     pub fn send(&mut self, outputs: &DeviceOutputs, exact: impl FnOnce() -> Option<(WireFrame, Frame)>) {
         let _section = Section::enter();
         match self {
@@ -144,9 +130,8 @@ impl Robot {
         }
     }
 
-    /// After the controller's tick: the position of a robot outside the cell, which the cell follows, if known.
-    /// `acknowledged` gives the position that the robot has last acknowledged or reported; it is called only
-    /// for a robot at a port.
+    /// After the controller's tick: the position of a robot outside the cell, if known. `acknowledged` gives the
+    /// position of a robot at a port.
     pub fn moved(&mut self, acknowledged: impl FnOnce() -> Option<Plate>) -> Option<Plate> {
         match self {
             Self::Simulated => None,
@@ -175,13 +160,11 @@ impl Robot {
         if let Self::Own(own) = self { own.news() } else { None }
     }
 
-    /// True if the robot is not the simulated one.
     #[must_use]
     pub const fn is_elsewhere(&self) -> bool {
         !matches!(self, Self::Simulated)
     }
 
-    /// True if the caller of the library provides the robot.
     #[must_use]
     pub const fn is_own(&self) -> bool {
         matches!(self, Self::Own(_))
@@ -198,13 +181,11 @@ impl Robot {
         }
     }
 
-    /// The serial port, if any.
     #[must_use]
     pub const fn port(&self) -> Option<&Port> {
         if let Self::Serial(port) = self { Some(port) } else { None }
     }
 
-    /// The robot with EGM, if any.
     #[must_use]
     pub const fn egm(&self) -> Option<&EgmPort> {
         if let Self::Egm(egm) = self { Some(egm) } else { None }

@@ -6,8 +6,7 @@
 //!    └──── PAUSE, next line ◄──── it has disconnected, and no command is executed ◄───┘
 //! ```
 //!
-//! The numbers of the commands form one sequence. A workstation controller that connects before this line
-//! waits, and reads no status.
+//! The numbers of the commands form one sequence. A workstation controller that connects earlier waits.
 
 use std::{
     thread,
@@ -29,12 +28,9 @@ use crate::{
     outside::OutsideWorkstation,
 };
 
-/// Location of the robot when the workstation controller takes over (IV.4.1).
-const HOME: &str = "HOME";
-/// Last command before the workstation controller takes over.
-const PAUSE: &str = "PAUSE";
+const HOME: &str = "HOME"; // location of the robot when the workstation controller takes over (IV.4.1)
+const PAUSE: &str = "PAUSE"; // last command before the workstation controller takes over
 
-/// Outputs of a tick, and related data.
 pub struct Around<'a> {
     pub tick: Tick,
     /// Common memory after the tick and the task data, and the verdict on commands.
@@ -43,20 +39,15 @@ pub struct Around<'a> {
     pub has_data_system: bool,
 }
 
-/// A job, and the workstation controller in another process to which it transfers the command.
 pub struct Switched {
     job: JobPlayer,
     outside: OutsideWorkstation,
-    /// Time limit for the connection of the workstation controller, s.
-    wait: u32,
-    /// Tick in which it took over.
-    since: Tick,
-    /// True if it has been connected since then.
-    was_connected: bool,
+    wait: u32,           // time limit for the connection of the workstation controller, s
+    since: Tick,         // tick in which it took over
+    was_connected: bool, // true if it has been connected since then
 }
 
 impl Switched {
-    /// Start with the job in command.
     #[must_use]
     pub fn new(hwsc: Hwsc, endpoint: Endpoint, wait: u32) -> Self {
         Self {
@@ -73,7 +64,6 @@ impl Switched {
         self.job.hwsc.is_handed_over()
     }
 
-    /// The job, unless it has transferred the command.
     pub fn job_under_way(&mut self) -> Option<&mut Hwsc> {
         (!self.is_handed_over()).then_some(&mut self.job.hwsc)
     }
@@ -107,13 +97,11 @@ impl Switched {
         [self.job.hwsc.begun_steps(), outside].concat()
     }
 
-    /// The commands of the job that failed and were repeated.
     #[must_use]
     pub fn retried(&self) -> &[Retry] {
         self.job.hwsc.retried()
     }
 
-    /// Called once per tick, after controller and cell.
     pub fn step(
         &mut self,
         around: &Around<'_>,
@@ -129,7 +117,6 @@ impl Switched {
         if self.is_handed_over() { self.hand_over(around, gate, events) } else { progress }
     }
 
-    /// Execute the line `** workstation`.
     fn hand_over(&mut self, around: &Around<'_>, gate: &mut Gate, events: &mut Vec<Event>) -> Progress {
         if let Some(obstacle) = obstacle(around.judge.memory, gate.command(), around.has_data_system) {
             return self.refuse(around.tick, obstacle);

@@ -10,7 +10,6 @@ fn config(job: &str) -> RunConfig {
     RunConfig { log: LogTarget::None, shared_memory: false, ..RunConfig::new(DATA, job) }
 }
 
-/// Records the lines of the job that have begun.
 #[derive(Clone, Default)]
 struct Lines(Arc<Mutex<Vec<String>>>);
 

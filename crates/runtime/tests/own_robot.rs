@@ -79,8 +79,7 @@ fn workstation_error_ends_the_job_with_a_message() {
 struct Lagging {
     robot: Follower,
     lag: Lag,
-    /// Positions that it has not yet shown.
-    path: VecDeque<Plate>,
+    path: VecDeque<Plate>, // positions that it has not yet shown
     stopped: bool,
 }
 
@@ -98,17 +97,14 @@ enum Fault {
     Frozen(u32),
     /// The robot waits for 1 s, and catches up.
     Waits(u32),
-    /// The robot jumps 3 in up.
     Jumps(u32),
 }
 
-/// More points than a linkbar has before its first motion: the robot moves.
-const MOVES: u32 = 150;
+const MOVES: u32 = 150; // more points than a linkbar has before its first motion: the robot moves
 
 impl Robot for Lagging {
     fn present(&mut self) -> Plate {
         if std::mem::take(&mut self.stopped) {
-            // The robot stays in place.
             self.path.clear();
             self.robot.goal = self.robot.at;
         }

@@ -4,7 +4,6 @@ use taskdata::load::alike::alike;
 
 use super::both::Both;
 
-/// Warn of each pair of such objects.
 pub fn check(both: &mut Both<'_>) {
     let cell = both.cell;
     for pair @ [_, object] in alike(&both.data) {

@@ -1,5 +1,3 @@
-//! Task data and cell description together: entries of both, with their positions in the files.
-
 use diagnostics::{At, Diagnostics, Problems, Source};
 use plant::CellDescription;
 use rcs_core::name::Name16;
@@ -57,7 +55,6 @@ impl<'a> Both<'a> {
         self.in_cell.error_help("cell.place", place, format!("{entry}: {message}"), help);
     }
 
-    /// A location of the task data by its name.
     pub fn location(&self, name: &str, sector: u16, object: Option<&str>) -> Option<Location> {
         let object = object.and_then(|object| Name16::new(object).ok());
         self.data

@@ -9,11 +9,9 @@ use plant::{
 use rcs_core::name::{Name10, Name16};
 use taskdata::{files::TaskData, load::Workstation};
 
-/// Tolerance for rounding in the description, in.
-const ROUNDING: f64 = 1e-6;
+const ROUNDING: f64 = 1e-6; // tolerance for rounding in the description, in
 
-/// The reason why a part does not fit into a sector: a fixture obstructs the part, whose centre is at most
-/// `off` from the middle of the sector.
+/// A fixture obstructs the part, whose centre is at most `off` from the middle of the sector.
 pub fn occupied(action: &WorkstationAction, cell: &CellDescription) -> Option<String> {
     let WorkstationAction::Place { part, unit, sector, placement } = action else { return None };
     let part = cell.part(part).filter(|part| !cell.nest.iter().any(|nest| nest.takes(part)))?;
@@ -70,10 +68,8 @@ pub struct Refused {
 pub struct State<'c> {
     cell: &'c CellDescription,
     pub data: TaskData<'c>,
-    /// State of the jaws, if known.
     jaws: Option<Jaws<'c>>,
-    /// The object that was put into the vise last.
-    in_vise: Option<Name16>,
+    in_vise: Option<Name16>, // the object that was put into the vise last
     /// Unit and sector of parts that were put down at random positions.
     random: Vec<(Name10, Option<i32>)>,
 }
@@ -92,8 +88,8 @@ impl<'c> State<'c> {
         Self { cell, data, jaws, in_vise: None, random: Vec::new() }
     }
 
-    /// Apply a `**` line. `lost` is true if it takes effect at another time or was refused. Returns the reason
-    /// if the line is impossible.
+    /// Apply a `**` line. `lost` is true if it takes effect at another time or was refused. Returns why it is
+    /// impossible.
     pub fn action(&mut self, action: &Workstation, lost: bool) -> Option<String> {
         let vise = self.cell.vise.location.as_str();
         match action {
@@ -149,8 +145,8 @@ impl<'c> State<'c> {
 }
 
 impl Jaws<'_> {
-    /// The reason why a part cannot be inserted: none of its sides fits between the clamping faces and is wider
-    /// than the gap between the inner faces, through which the part would fall.
+    /// Why a part cannot be inserted: none of its sides fits between the clamping faces and is too wide to fall
+    /// through.
     fn refuse(&self, part: &PartType) -> Option<String> {
         let (opening, how) = match self.opening {
             ViseOpening::Close => {

@@ -1,8 +1,7 @@
 //! Checks that task data, job and cell description describe the same cell.
 //!
-//! Each of the three has already been checked alone. This module finds names that only one of them has: they
-//! would make a run fail late, or send the robot to an empty place. It also compares numbers that several of
-//! them contain: `sizes`, `places`, `job`.
+//! Each was already checked alone. This module finds names that only one of them has, which would make a run fail late,
+//! and compares numbers: `sizes`, `places`, `job`.
 
 mod alike;
 mod both;
@@ -71,8 +70,7 @@ pub fn of_job(job: &Job, source: &Source, cell: &CellDescription, store: &Store,
     Diagnostics::of_file(problems, job.source())
 }
 
-/// Check blocks that a line loads against the cell, like those of the data directory. A line that ends with
-/// `expect error` must load blocks that do not fit.
+/// Check blocks that a line loads against the cell. With `expect error` they must not fit.
 fn load(
     job: &Source,
     line: &JobLine,
@@ -132,7 +130,6 @@ pub fn of_cell(source: Source, cell: &CellDescription, store: &Store) -> Diagnos
     report.with(both.report())
 }
 
-/// Looks up the names of a cell description.
 struct Names<'a> {
     source: &'a Source,
     data: TaskData<'a>,

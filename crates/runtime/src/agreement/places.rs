@@ -11,8 +11,7 @@ use taskdata::files::Location;
 
 use super::both::Both;
 
-/// Greatest distance of a body from its place in the task data, inches and degrees. It is less than the
-/// clearances of the nests into which a part is moved (SPECNOTES).
+/// Greatest distance of a body from its place, inches and degrees: less than the clearances of the nests (SPECNOTES).
 const INCHES: f64 = 0.25;
 const DEGREES: f64 = 2.0;
 
@@ -23,7 +22,6 @@ const HOLSTERS: [(&str, &str); 3] =
 /// A body of the cell at a location: its entry in the cell description, the name of the location, and its frame.
 pub type Body<'a> = (&'static str, &'a str, Frame);
 
-/// The bodies that have a location of their own: vise, pedestal, holsters, drum.
 pub fn bodies(cell: &CellDescription) -> impl Iterator<Item = Body<'_>> {
     let pedestal = &cell.pedestal;
     let radial = Rotation::from_axis_angle(&Vector::z_axis(), pedestal.azimuth.to_radians());
@@ -40,7 +38,6 @@ pub fn bodies(cell: &CellDescription) -> impl Iterator<Item = Body<'_>> {
     .chain(framed)
 }
 
-/// Add an error for each body that is at another place.
 pub fn check(both: &mut Both<'_>) {
     for (entry, name, frame) in bodies(both.cell) {
         stands(both, entry, name, &frame);
@@ -49,7 +46,6 @@ pub fn check(both: &mut Both<'_>) {
     nests(both);
 }
 
-/// Check that a body is at a location.
 fn stands(both: &mut Both<'_>, entry: &str, name: &str, body: &Frame) {
     let Some(location) = both.location(name, 0, None) else { return };
     if let Some(apart) = apart(body, &location.frame) {
@@ -58,7 +54,6 @@ fn stands(both: &mut Both<'_>, entry: &str, name: &str, body: &Frame) {
     }
 }
 
-/// Check the sectors of loose parts.
 fn trays(both: &mut Both<'_>) {
     let cell = both.cell;
     let loose = |part: &&PartType| !cell.nest.iter().any(|nest| nest.takes(part));
@@ -92,9 +87,8 @@ fn nests(both: &mut Both<'_>) {
     }
 }
 
-/// Checks that the tool point of a grip of a part in a nest is inside the part, and at the same point of the
-/// part in all nests. For a cylinder, which may be turned about its axis, only the position along the axis
-/// matters. Returns the first wrong grip, and the reason.
+/// Checks that the tool point of a grip is inside the part, and at the same point of the part in all nests. For a
+/// cylinder only the position along the axis matters. Returns the first wrong grip, and the reason.
 fn beside(both: &Both<'_>, number: usize, part: &PartType) -> Option<(Location, String)> {
     let (name, data) = (Name16::clipped(&part.name), both.data);
     let nest = both.cell.nest.get(number)?;
@@ -126,7 +120,6 @@ fn beside(both: &Both<'_>, number: usize, part: &PartType) -> Option<(Location, 
     })
 }
 
-/// The tool point of a grip of a part in a nest, in the axes of the part.
 fn grip_in(both: &Both<'_>, nest: &Nest, part: &Name16, grip: i32) -> Option<(Location, Vector)> {
     let location = both.location(&nest.location, nest.sector, Some(part.as_str()))?;
     let frame = both.data.grip_frame(part, grip, &location).ok()?;

@@ -1,5 +1,4 @@
-//! Compares openings and forces of the forms with grippers and parts of the cell (VII.7.1, VII.7.2, VII.7.4), and view
-//! ranges with the camera (VII.7.6).
+//! Compares openings, forces and view ranges of the forms with the cell (VII.7.1, VII.7.2, VII.7.4, VII.7.6).
 
 use geometry::{frame::Frame, units::Length};
 use levels::subtask::aims::GRIPPERS;
@@ -13,16 +12,13 @@ use super::both::Both;
 
 /// Fingers within this distance of the width of a part are treated as touching it, in: rounding of the forms.
 const ROUNDING: f64 = 0.005;
-/// `endeff-id#` of the tool gripper (VII.7.2).
-const TOOL_GRIPPER: i32 = 3;
-/// Millimetres in an inch.
-const MM: f64 = 25.4;
+const TOOL_GRIPPER: i32 = 3; // `endeff-id#` of the tool gripper (VII.7.2)
+const MM: f64 = 25.4; // millimetres in an inch
 
 fn inches(hundredths: i32) -> f64 {
     f64::from(hundredths) / 100.0
 }
 
-/// Add an error or a warning for each misfit.
 pub fn check(both: &mut Both<'_>) {
     for (index, record) in both.data.end_effs.iter().enumerate() {
         grip(both, index, record);
@@ -95,7 +91,6 @@ fn gripper<'a>(both: &Both<'a>, id: i32) -> Option<(&'static str, &'static str, 
     }
 }
 
-/// Check a grip of an object: stroke and force of its gripper, width of the part.
 fn grip(both: &mut Both<'_>, index: usize, record: &EndEffPara) {
     let object = both.data.object_name(record.object);
     let origins = &both.store.origins().end_effs;
@@ -169,8 +164,8 @@ fn grip(both: &mut Both<'_>, index: usize, record: &EndEffPara) {
     }
 }
 
-/// Possible widths of a part between the fingers, in. On a tray the part's X axis points down and its Z axis is along
-/// that of the sector, so the movetable of the grip there determines the side. Elsewhere any side is possible.
+/// Possible widths of a part between the fingers, in. On a tray, X of the part points down, and the movetable of the
+/// grip determines the side; elsewhere any side is possible.
 fn widths(both: &Both<'_>, record: &EndEffPara, part: &PartType) -> Vec<f64> {
     let on_tray = |kind| matches!(kind, RefType::Any | RefType::Array);
     let grips = both.data.grip_locs.iter().filter(|g| g.object == record.object && g.grip == record.grip);
@@ -191,8 +186,7 @@ fn widths(both: &Both<'_>, record: &EndEffPara, part: &PartType) -> Vec<f64> {
     known
 }
 
-/// Check the range of a view: from the image plane along the optical axis to the top of the part on the tray. An error
-/// of the range scales all lengths in the picture, and recognition fails.
+/// Check the range of a view, to the top of the part on the tray: it scales all lengths in the picture.
 fn view(both: &mut Both<'_>, index: usize, record: &VisionPara) {
     let object = both.data.object_name(record.object);
     let cell = both.cell;

@@ -1,5 +1,3 @@
-//! Errors of a load.
-
 use std::{fmt, io, time::Duration};
 
 use executive::boards::Board;
@@ -14,25 +12,17 @@ pub enum LoadError {
     Loading,
     /// The operator has left or disconnected before the boards had checked the block.
     Withdrawn,
-    /// The data directory has no such block.
     NoBlock(BlockNumber),
-    /// A symbolic link leads from this file out of the data directory.
     Outside(String),
     /// The log whose inputs are replayed does not contain the text.
     NotRecorded,
-    /// The load was refused in the log.
     Recorded(String),
-    /// The data with the block have errors.
     Data(Box<Diagnostics>),
     /// The job has meanwhile loaded blocks, or waits for the end of a command to load some.
     Reload,
-    /// The file for the boards cannot be written.
     Write(io::Error),
-    /// A board has exceeded the time limit of its check.
     Late,
-    /// A board has other data after the load.
     Differs(Board),
-    /// The checking thread has ended.
     NoThread,
 }
 

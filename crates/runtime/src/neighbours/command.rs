@@ -10,13 +10,11 @@ use super::{Neighbours, WorkstationSource};
 use crate::{event::Event, outside::OutsideWorkstation};
 
 impl Neighbours {
-    /// True if an operator commands instead of the workstation controller.
     #[must_use]
     pub fn is_stand_alone(&self) -> bool {
         matches!(&self.workstation, WorkstationSource::Outside(commanded) if commanded.is_stand_alone())
     }
 
-    /// The workstation controller in another process, if one can connect.
     fn outside(&mut self) -> Option<&mut OutsideWorkstation> {
         match &mut self.workstation {
             WorkstationSource::Emulator(_) => None,
@@ -40,10 +38,7 @@ impl Neighbours {
         }
     }
 
-    /// Take over from the workstation controller; `now` also permits it in the middle of a command.
-    ///
-    /// # Errors
-    /// A sentence with the reason if that is not possible.
+    /// `now` also permits it in the middle of a command. Errors: the reason, as a sentence.
     pub fn take_command(
         &mut self,
         tick: Tick,
@@ -60,10 +55,7 @@ impl Neighbours {
         }
     }
 
-    /// Return the command to the workstation controller (IV.4.1).
-    ///
-    /// # Errors
-    /// A sentence with the reason if that is not possible.
+    /// Return the command (IV.4.1). Errors: the reason, as a sentence.
     pub fn give_command(
         &mut self,
         tick: Tick,

@@ -1,6 +1,5 @@
-//! An operator's orders to the Active Pedestal, and statements about the object in the gripper. The tables of
-//! the controller decide (`levels::subtask::manual`, `levels::task::support`). Orders that they would refuse in
-//! the next tick are refused here, with the reason.
+//! An operator's orders to the Active Pedestal, and statements about the object in the gripper. Orders that the tables
+//! (`levels::subtask::manual`, `levels::task::support`) would refuse in the next tick are refused here.
 
 use geometry::units::inches;
 use interfaces::{
@@ -15,13 +14,9 @@ use rcs_core::{name::Name16, tick::Tick};
 use taskdata::files::TaskData;
 
 const ORDERS: &str = "pedestal pre-grip OBJECT, grip OBJECT, flip DEGREES, release [by hand] or pause";
-/// Largest angle that FLIP takes, degrees.
-const LARGEST_FLIP: f64 = 360.0;
+const LARGEST_FLIP: f64 = 360.0; // largest angle that FLIP takes, degrees
 
-/// Read the words after `pedestal`.
-///
-/// # Errors
-/// A message with the expected and the found text.
+/// Read the words after `pedestal`. Errors: a message with the expected and the found text.
 pub fn order(words: &[&str]) -> Result<HandOrder, String> {
     let expected = || format!("{ORDERS} was expected; found pedestal {}", words.join(" "));
     let of = |command| HandOrder { command, ..HandOrder::default() };
@@ -50,10 +45,7 @@ fn tenths(degrees: &str) -> Result<i32, String> {
     Ok(geometry::units::rounded(angle * 10.0))
 }
 
-/// Read the words after `confirm`.
-///
-/// # Errors
-/// A message with the expected and the found text.
+/// Read the words after `confirm`. Errors: a message with the expected and the found text.
 pub fn confirmation(words: &[&str]) -> Result<Support, String> {
     let text = words.join(" ");
     Support::from_text(&text).ok_or_else(|| {
@@ -65,10 +57,7 @@ pub fn confirmation(words: &[&str]) -> Result<Support, String> {
     })
 }
 
-/// Check an order for the next tick. Returns the answer for operator and log.
-///
-/// # Errors
-/// The reason of the refusal.
+/// Check an order for the next tick. Returns the answer for operator and log. Errors: the reason of the refusal.
 pub fn check_order(
     order: &HandOrder,
     tick: Tick,
@@ -82,10 +71,7 @@ pub fn check_order(
     }
 }
 
-/// Check a statement for the next tick. Returns the answer for operator and log.
-///
-/// # Errors
-/// The reason of the refusal.
+/// Check a statement for the next tick. Returns the answer for operator and log. Errors: the reason of the refusal.
 pub fn check_confirmation(by: Support, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     runs(ProcessId::Task, memory)?;
     let below = &memory.subtask.status;
@@ -121,7 +107,6 @@ fn runs(process: ProcessId, memory: &CommonMemory) -> Result<(), String> {
     }
 }
 
-/// State of the pedestal in one line.
 pub fn state(memory: &CommonMemory) -> String {
     let status = &memory.pedestal.status;
     let regrip =

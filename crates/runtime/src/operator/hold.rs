@@ -2,16 +2,12 @@
 
 use std::fmt;
 
-/// Motion by hand that has ended with its session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ended {
-    /// Motion by stick, buttons, single steps or frame.
-    pub joystick: bool,
+    pub joystick: bool, // stick, buttons, single steps or frame
     pub passes: bool,
-    /// Motion of the rotary table by the keys of its panel.
-    pub turns_table: bool,
-    /// The knob has gone to 0.
-    pub knob: bool,
+    pub turns_table: bool, // by the keys of its panel
+    pub knob: bool,        // it has gone to 0
 }
 
 impl fmt::Display for Ended {

@@ -1,5 +1,3 @@
-//! The cell in the result: parts, faults, emergencies, items and events.
-
 use std::fmt;
 
 use closed_loop::workstation::Emergency;
@@ -10,18 +8,13 @@ use serde::Serialize;
 
 use crate::event::Event;
 
-/// A fault of the cell that has occurred.
 #[derive(Clone, Debug, Serialize)]
 pub struct CellFaultResult {
-    /// Number in its file, from 1.
-    pub number: usize,
+    pub number: usize, // in its file, from 1
     pub text: String,
-    /// Number of times that it began.
-    pub times: u64,
-    /// The tick in which it began for the first time.
-    pub first: u64,
-    /// The last tick in which it was active.
-    pub last: u64,
+    pub times: u64, // it began
+    pub first: u64, // tick in which it began first
+    pub last: u64,  // last tick in which it was active
 }
 
 impl From<Struck> for CellFaultResult {
@@ -51,15 +44,10 @@ pub struct ContactResult {
 /// The last loss of hydraulic pressure in an emergency, and the place where the arm came to rest.
 #[derive(Clone, Debug, Serialize)]
 pub struct EmergencyResult {
-    /// Tick in which the pressure was lost.
-    pub tick: u64,
-    /// Cause of the stop: a person's action or a failure.
-    pub cause: String,
-    /// Position of the tool point, in.
-    pub position_in: [f64; 3],
-    /// True if the arm is at rest.
+    pub tick: u64,             // of the loss of pressure
+    pub cause: String,         // a person's action or a failure
+    pub position_in: [f64; 3], // position of the tool point, in
     pub at_rest: bool,
-    /// True if the shot pin has stopped the shoulder.
     pub on_shot_pin: bool,
     /// Contacts of the sagging arm, the deepest first.
     pub touched: Vec<ContactResult>,
@@ -87,12 +75,10 @@ impl From<&Emergency> for EmergencyResult {
 #[derive(Clone, Debug, Serialize)]
 pub struct ItemResult {
     pub item: String,
-    /// Its serial number; empty if the commands contained none.
-    pub serial: String,
+    pub serial: String, // empty if the commands contained none
     /// A location, or `H_ROBOT` while the robot holds it.
     pub position: String,
-    /// Sector there, 0 for none.
-    pub sector: u8,
+    pub sector: u8, // 0 for none
 }
 
 impl From<Item> for ItemResult {
@@ -112,7 +98,6 @@ impl fmt::Display for ItemResult {
     }
 }
 
-/// An event and its tick.
 #[derive(Clone, Debug, Serialize)]
 pub struct EventResult {
     pub tick: u64,
@@ -130,7 +115,6 @@ impl fmt::Display for EventResult {
 /// Number of stored events, so that a run of a year does not exhaust the memory. The log has all of them.
 const REMEMBERED: usize = 1000;
 
-/// Events of a run in the cell and with the neighbours.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Events {
     pub count: usize,
@@ -139,7 +123,6 @@ pub struct Events {
 }
 
 impl Events {
-    /// Add an event of a tick.
     pub fn push(&mut self, tick: Tick, event: &Event) {
         self.count += 1;
         if self.first.len() < REMEMBERED {

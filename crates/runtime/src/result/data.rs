@@ -1,5 +1,3 @@
-//! The data of a run in the result.
-
 use std::{
     fmt,
     path::{self, Path, PathBuf},
@@ -19,7 +17,6 @@ pub struct DataResult {
 }
 
 impl DataResult {
-    /// The data of a directory, of which `files` were read.
     #[must_use]
     pub fn new(directory: &Path, files: usize) -> Self {
         let absolute = || path::absolute(directory).unwrap_or_else(|_| directory.to_owned());

@@ -1,5 +1,3 @@
-//! The robot and the line to it, in the result.
-
 use std::{collections::BTreeMap, fmt};
 
 use ::egm::host::Counters;
@@ -18,8 +16,7 @@ pub struct LinkResult {
     pub naks: u32,
     pub retries: u32,
     pub checksum_errors: u32,
-    /// Points that were scaled back to the velocity limits.
-    pub limited: u32,
+    pub limited: u32, // points scaled back to the velocity limits
 }
 
 impl From<&LinkCounters> for LinkResult {
@@ -38,8 +35,7 @@ impl From<&LinkCounters> for LinkResult {
 #[derive(Clone, Debug, Serialize)]
 pub struct FaultsResult {
     pub total: u64,
-    /// Number of faults per kind that occurred.
-    pub kinds: BTreeMap<&'static str, u64>,
+    pub kinds: BTreeMap<&'static str, u64>, // by kind
 }
 
 impl From<Counts> for FaultsResult {
@@ -79,31 +75,23 @@ impl From<&Port> for PortResult {
     }
 }
 
-/// Counts and times of the line to a robot with EGM.
 #[derive(Clone, Debug, Serialize)]
 pub struct EgmResult {
     pub received: u64,
-    /// Messages received too late or twice.
-    pub old: u64,
-    /// Datagrams that were not valid messages of a robot.
-    pub refused: u64,
-    /// Datagrams from other addresses than that of the robot.
-    pub elsewhere: u64,
-    /// Address and reason of the last refused datagram.
-    pub last_refused: Option<String>,
+    pub old: u64,                     // received too late or twice
+    pub refused: u64,                 // not valid messages of a robot
+    pub elsewhere: u64,               // from other addresses than the robot's
+    pub last_refused: Option<String>, // address and reason
     pub sent: u64,
     /// Points that were added to a path.
     pub points: u64,
     /// Motions that were stopped because no point, or no message, arrived in time.
     pub interrupted: u64,
     pub beyond: u64,
-    /// Root mean square of the distance from the robot to its target, mm.
-    pub error_rms_mm: f64,
-    /// Greatest distance, mm.
-    pub error_max_mm: f64,
+    pub error_rms_mm: f64, // root mean square of the distance from the robot to its target, mm
+    pub error_max_mm: f64, // greatest distance, mm
     /// Times between two messages of the robot.
     pub cycle_us: TickTimes,
-    /// Times from a message to its answer.
     pub answer_us: TickTimes,
 }
 

@@ -1,5 +1,3 @@
-//! Times of ticks and boards, in the result.
-
 use executive::{boards::coordinator::BoardFigures, histogram};
 use serde::Serialize;
 
@@ -7,8 +5,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct TickTimes {
     pub p50: f64,
-    /// 99th percentile.
-    pub p99: f64,
+    pub p99: f64, // 99th percentile
     pub max: f64,
 }
 
@@ -23,7 +20,6 @@ impl From<histogram::Summary> for TickTimes {
 pub struct BoardResult {
     pub board: u8,
     pub processes: String,
-    /// Process identifier of the operating system.
     pub pid: u32,
     /// Time from its wake-up to its stamp.
     pub tick_us: TickTimes,

@@ -11,7 +11,6 @@ use crate::{event::Event, verdict::Ending};
 pub(super) struct Ramp {
     pub(super) ending: Ending,
     pub(super) ticks: u32,
-    /// Digest of the ticks before the ramp.
     pub(super) before: Digest,
 }
 
@@ -28,8 +27,8 @@ impl Run {
         self.end_at_rest(if is_commanded { Ending::Stopped } else { Ending::StoppedByUser });
     }
 
-    /// End a run whose inputs are from a log that has ended, if the job waits for an operator. In the fast
-    /// clock it would wait forever.
+    /// End a run with the inputs of a log that has ended, if the job waits for an operator: in fast clock it would wait
+    /// forever.
     pub(super) fn end_if_nobody_asks(&mut self, tick: Tick) {
         let have_ended = self.ramp.is_none() && self.asked.have_ended(tick);
         if have_ended && self.neighbours.job_under_way().is_ok_and(|job| job.waits_idle()) {
