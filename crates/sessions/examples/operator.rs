@@ -1,5 +1,4 @@
-//! A run that counts its ticks, and an operator that sends requests: both sides of a session in one process.
-//! `cargo run --release -p sessions --example operator`.
+//! A run and an operator in one process: `cargo run --release -p sessions --example operator`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 

@@ -1,5 +1,5 @@
-//! Sends one value over a WebSocket to Foxglove or Lichtblick, 25 times per second for ten seconds. Run `cargo
-//! run --release -p sessions --example sine`, connect to the printed address, and plot `/wave.height`.
+//! Sends a value to Foxglove or Lichtblick, 25 times per second: run `cargo run --release -p sessions --example sine`,
+//! connect to the printed address, and plot `/wave.height`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 

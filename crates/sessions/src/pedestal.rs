@@ -1,7 +1,7 @@
 //! The controller's side of a pedestal in another process: the mailboxes of Subtask and Diagnostics (IX.3).
 //!
-//! Once per tick it sends the command of Subtask and receives the pedestal's statuses, as an input of the next tick.
-//! The processes of the controller read from common memory whether the pedestal answers or is lost:
+//! Once per tick it sends the command of Subtask and receives the statuses, as an input of the next tick. Common memory
+//! shows the processes whether the pedestal answers or is lost:
 //!
 //! | event                                              | common memory                                                   |
 //! |----------------------------------------------------|-----------------------------------------------------------------|
@@ -26,22 +26,18 @@ use neighbours::pedestal::{
     table::TableLayout,
 };
 
-/// Time limit for the echo of a command over a network on the 40 ms grid: 2 s, in ticks. In fast clock every
-/// tick waits for the answer.
+/// Time limit for the echo of a command on the 40 ms grid: 2 s. In fast clock every tick waits for the answer.
 const ECHO_TICKS: u64 = 50;
 
-/// A remark about the pedestal for the log.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Remark {
-    /// The pedestal has connected or disconnected, or a connection was refused.
     Network(NetEvent),
     Refuses(String),
     /// The pedestal's status cannot be decoded, which is treated as no answer.
     Garbled(Place, PedestalError),
     /// The pedestal is connected but does not echo a command.
     Silent(u32),
-    /// The data to send do not fit the mailbox.
     Unsent(MailboxError),
 }
 
@@ -78,12 +74,9 @@ impl std::fmt::Display for Remark {
 pub struct Agent {
     endpoint: Endpoint,
     sent: OutsidePedestal,
-    /// The pedestal's last verdict, and the mailgram number to which it refers.
-    refused: (Verdict, u16),
-    /// The unreadable mailbox, if any.
-    garbled: Option<Place>,
-    /// Tick since which the echo of the last command is missing.
-    waiting: Option<Tick>,
+    refused: (Verdict, u16), // the pedestal's last verdict, and the mailgram number to which it refers
+    garbled: Option<Place>,  // the unreadable mailbox, if any
+    waiting: Option<Tick>,   // tick since which the echo of the last command is missing
     silent: bool,
     remarks: Vec<Remark>,
 }
@@ -113,8 +106,8 @@ impl Agent {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Called between two ticks. Sends the command in common memory and the sensor words that the tick `next`
-    /// reads, and receives the pedestal's statuses for that tick.
+    /// Between two ticks: send the command and the sensor words that the tick `next` reads, and receive the statuses
+    /// for it.
     pub fn exchange(&mut self, next: Tick, command: &PedestalCommand, sensors: &PedestalSensors) {
         self.put(PEDESTAL_COMMAND, &CommandLayout::encode(command));
         self.put(PEDESTAL_SENSORS, &SensorsLayout::encode(sensors));
@@ -152,8 +145,8 @@ impl Agent {
         }
     }
 
-    /// Reads the pedestal's four mailboxes, all or none. Returns false if the pedestal has not yet written a
-    /// status. An optional mailbox that it does not write has its initial value.
+    /// Reads the pedestal's four mailboxes, all or none. False before its first status. An optional mailbox may have
+    /// its initial value.
     fn receive(&mut self) -> Result<bool, (Place, PedestalError)> {
         let endpoint = &self.endpoint;
         let Some(status) = read(endpoint, PEDESTAL_STATUS, Status::decode)? else { return Ok(false) };
@@ -173,8 +166,7 @@ impl Agent {
         Ok(true)
     }
 
-    /// True if the pedestal echoes the last command or the time limit has not passed. Before the echo, its
-    /// status belongs to an earlier command.
+    /// True if the pedestal echoes the last command or the time limit has not passed.
     fn is_heard(&mut self, next: Tick, number: u32) -> bool {
         if number == 0 || self.sent.pedestal.status.echo == number || self.endpoint.clock() == ClockKind::Fast
         {
@@ -219,8 +211,7 @@ mod tests {
 
     /// The controller's side on the 40 ms grid, and a pedestal that writes what the test specifies.
     struct Bench {
-        /// First, because a dropped endpoint waits for its session.
-        session: TestSession,
+        session: TestSession, // First, because a dropped endpoint waits for its session
         agent: Agent,
         tick: u64,
         status_box: Mailbox,
@@ -244,8 +235,7 @@ mod tests {
             self.write(&Status { status, ..Status::default() }.encode());
         }
 
-        /// Runs a tick with command `number`. Returns whether the pedestal answers, and whether its outputs are
-        /// republished.
+        /// Returns whether the pedestal answers, and whether its outputs are republished.
         fn tick(&mut self, number: u32) -> (bool, bool) {
             self.tick += 1;
             let command =

@@ -9,8 +9,7 @@
 //! | a response while `vision-ready-input` is 1     | not read                                                      |
 //! | data that are not a response                   | not read; the ready words keep their values                   |
 //!
-//! If a response is not read, E-move keeps the earlier one, and waits at most until its time limit for vision.
-//! The mailbox is read in every cycle (IX), and invalid data are reported once.
+//! If a response is not read, E-move keeps the earlier one, until its time limit. Invalid data are reported once.
 
 use std::fmt;
 
@@ -23,32 +22,26 @@ use neighbours::{
     mailbox::{MailboxError, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE},
 };
 
-/// A remark about vision for the log.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Remark {
     Network(NetEvent),
-    /// The mailbox that vision has written cannot be decoded.
     Refused(VisionError),
     /// Vision has answered another request than the present one.
     Stranger {
         echo: u16,
-        /// Number of the present request; 0 without one.
-        expected: u16,
+        expected: u16, // number of the present request; 0 without one
     },
     /// Vision has written an answer while `vision-ready-input` is not ready.
     Unread {
         echo: u16,
     },
-    /// A request cannot be written yet.
     Waits {
         number: u16,
-        /// True if vision is connected but not ready.
-        connected: bool,
+        connected: bool, // true if vision is connected but not ready
     },
     /// The picture has more parts than its mailbox holds; this is the number of omitted parts.
     Cropped(usize),
-    /// A mailbox cannot hold the data.
     Mailbox(MailboxError),
 }
 
@@ -105,25 +98,18 @@ pub struct Port {
     endpoint: Endpoint,
     /// Seed of the run, and fingerprint of the entries of its cell description on which vision depends.
     run: (u64, u64),
-    /// E-move's present request; number 0 for none.
-    wanted: VisionRequest,
-    /// True if the present request was written to the mailbox.
-    written: bool,
-    /// `vision-ready-output`.
+    wanted: VisionRequest, // E-move's present request; number 0 for none
+    written: bool,         // true if the present request was written to the mailbox
     output: Ready,
-    /// The response that E-move reads.
-    response: VisionResponse,
-    /// The last content of the response area.
-    found: VisionResponse,
-    /// The last reported error of reading the mailbox.
-    refused: Option<VisionError>,
+    response: VisionResponse,     // the response that E-move reads
+    found: VisionResponse,        // the last content of the response area
+    refused: Option<VisionError>, // the last reported error of reading the mailbox
     waits: bool,
     remarks: Vec<Remark>,
 }
 
 impl Port {
-    /// A port with an endpoint, the seed of the run, and the fingerprint of the entries of its cell description on
-    /// which vision depends.
+    /// `cell` is the fingerprint of the entries of the cell description on which vision depends.
     #[must_use]
     pub const fn new(endpoint: Endpoint, seed: u64, cell: u64) -> Self {
         Self {
@@ -147,7 +133,6 @@ impl Port {
         }
     }
 
-    /// The response that E-move reads.
     #[must_use]
     pub const fn response(&self) -> &VisionResponse {
         &self.response
@@ -158,8 +143,8 @@ impl Port {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Call once per tick, after E-move and the cell. `wanted` is E-move's request. `picture` returns the parts
-    /// in the picture of the simulated camera; it is called in the tick in which the request is written.
+    /// Once per tick, after E-move and the cell. `picture` returns the parts in the picture; it is called in the tick
+    /// in which the request is written.
     pub fn step(&mut self, tick: u64, wanted: &VisionRequest, picture: impl FnOnce() -> Vec<Part>) {
         if wanted.number != self.wanted.number {
             (self.wanted, self.written, self.waits) = (*wanted, false, false);
@@ -261,10 +246,8 @@ mod tests {
     use crate::network::{ClockKind, Disconnect, Role, endpoint::tests::TestSession};
     use neighbours::mailbox::{Mailbox, Place};
 
-    /// A port, and the session at its other end.
     struct Bench {
-        /// First, because a dropped endpoint waits for its session.
-        session: Option<TestSession>,
+        session: Option<TestSession>, // First, because a dropped endpoint waits for its session
         port: Port,
         response_box: Mailbox,
         tick: u64,

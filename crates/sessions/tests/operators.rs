@@ -28,7 +28,6 @@ impl Bench {
         Client::connect(&self.path, &name.parse().unwrap()).unwrap()
     }
 
-    /// Waits up to two seconds for the next event.
     fn next(&self) -> Given {
         let started = Instant::now();
         loop {
@@ -106,7 +105,6 @@ fn protocol_error_ends_only_its_session() {
         let said = bench.said_to(bytes);
         assert!(said.contains(why), "{said}");
     }
-    // A session that never sends its name.
     assert!(bench.said_to(b"").contains("hello NAME was expected"));
     good.send("stop").unwrap();
     loop {
@@ -142,7 +140,6 @@ fn sessions_with_equal_names_are_renamed() {
     }
 }
 
-/// Takes events until the first that is a line.
 fn next_line(bench: &Bench) -> Event {
     loop {
         let event = bench.next().event;

@@ -1,6 +1,4 @@
-//! The tables of docs/neighbours.md are those of the code.
-//!
-//! After a change: `RCS_WRITE_DOCS=1 cargo test -p sessions --test page`.
+//! The tables of docs/neighbours.md are those of the code: `RCS_WRITE_DOCS=1 cargo test -p sessions --test page`.
 
 use std::{env, fmt::Write as _, fs, path::Path};
 
@@ -13,7 +11,6 @@ use neighbours::{
 };
 use sessions::network::Role;
 
-/// The mailboxes of all neighbours: those of Table IX.1, and additional ones.
 fn mailboxes() -> String {
     let mut page = "| address | bytes | mailbox | written by |\n|---|---|---|---|\n".to_owned();
     for role in Role::ALL {

@@ -1,11 +1,10 @@
 //! The controller's side of a Data System in another process.
 //!
-//! It runs on a separate thread, which may wait for the disk and the network. A command is written to the
-//! mailbox; the status that answers it is received with the pulse of the same exchange, or of a later one.
-//! Updates are kept on the disk until they are answered ([`Outbox`]). Pending updates of an earlier run follow
-//! the next STARTUP, before Task receives its status, so that the database receives all updates in their order.
+//! It runs on a separate thread, which may wait for the disk and the network. Updates are kept on the disk until they
+//! are answered ([`Outbox`]). Pending updates of an earlier run follow the next STARTUP, before Task receives its
+//! status, so that the database receives all updates in order.
 //!
-//! On the line the agent numbers the commands itself, because updates sent after STARTUP have no number of Task:
+//! The agent numbers the commands itself, because updates sent after STARTUP have no number of Task:
 //!
 //! | command sent                             | command-id#     | status that answers it                              |
 //! |------------------------------------------|-----------------|-----------------------------------------------------|
@@ -13,8 +12,8 @@
 //! | the same, because it has no answer yet   | the same        | one to any of its repetitions: they are one command |
 //! | the same, because Task commands it again | the next number | one with this number: repeated answers are ignored  |
 //!
-//! A server that does not answer within the time limit of the clock is silent, and so is one whose answer is
-//! not a valid status. Task then receives no answer, and repeats the command (V.4.1).
+//! A server that does not answer within the time limit, or not with a valid status, is silent: Task receives no answer,
+//! and repeats the command (V.4.1).
 
 use std::{
     fmt, thread,
@@ -34,20 +33,17 @@ use neighbours::{
 use super::outbox::Outbox;
 use crate::network::{Endpoint, NetEvent, Presence, StopHandle, clock::answer_limit};
 
-/// Time between two checks for the server's answer.
-const PAUSE: Duration = Duration::from_millis(5);
+const PAUSE: Duration = Duration::from_millis(5); // time between two checks for the server's answer
 
 /// A remark about the Data System for the log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remark {
-    /// The Data System has connected or disconnected, or a connection was refused.
     Network(NetEvent),
     /// Its status cannot be read. This is reported once per sent command.
     Garbled(StatusError),
     /// It is connected, but does not answer.
     Silent {
-        /// command-id# of the unanswered command.
         command_id: u16,
         patience: Duration,
     },
@@ -88,19 +84,15 @@ pub struct Agent {
     outbox: Outbox,
     patience: Duration,
     exchanges: u64,
-    /// command-id# of the last sent command; 0 before the first.
-    command_id: u16,
-    /// True while the last command has no answer.
-    open: bool,
-    /// Mailgram number of the status in the mailbox when the command was first sent. That status answers an
-    /// earlier command.
+    command_id: u16, // command-id# of the last sent command; 0 before the first
+    open: bool,      // true while the last command has no answer
+    /// The status in the mailbox when the command was first sent, which answers an earlier command.
     before: u16,
     remarks: Vec<Remark>,
 }
 
 impl Agent {
-    /// An agent at an endpoint, with its outbox. The time limit for an answer is that of the network for a
-    /// pulse: 10 s on the 40 ms grid, 60 s in fast clock.
+    /// An agent at an endpoint, with its outbox. It waits 10 s for an answer on the 40 ms grid, 60 s in fast clock.
     #[must_use]
     pub fn new(endpoint: Endpoint, outbox: Outbox) -> Self {
         let patience = answer_limit(endpoint.clock());
@@ -173,8 +165,8 @@ impl Agent {
         }
     }
 
-    /// Send all stored updates, the oldest first. Returns the last answer, if there were updates; `None` if an
-    /// update is not answered.
+    /// Send all stored updates, the oldest first; the last answer, if there were updates; `None` if one is not
+    /// answered.
     #[expect(clippy::option_option, reason = "no answer differs from nothing to tell")]
     fn tell_all(&mut self) -> Option<Option<Answer>> {
         let pending = match self.outbox.pending() {
@@ -187,7 +179,6 @@ impl Agent {
             command::number(&mut bytes, kept.number);
             let answer = self.ask(&bytes)?;
             match answer.status.summary {
-                // The Data System may accept it later.
                 Summary::None | Summary::Refused(Refusal::Sequence | Refusal::Store) => {
                     return Some(Some(answer));
                 }
@@ -270,7 +261,6 @@ impl Agent {
     }
 }
 
-/// The answer to a command that the controller itself refuses.
 fn refused(why: String) -> Answer {
     let summary = Summary::Refused(Refusal::Store);
     Answer { status: Status { command_id: 0, server: ServerStatus::Idle, summary }, why }

@@ -1,5 +1,4 @@
-//! The exclusive right of one program to write to a database. SQLite locks a database only for a statement, and
-//! two controllers in one database end each other's sessions.
+//! The exclusive right of one program to write to a database: SQLite locks a database only for a statement.
 
 use std::{
     fs::{self, File, OpenOptions, TryLockError},
@@ -8,8 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Suffix of the file that is locked, after the name of the database.
-const SUFFIX: &str = "lock";
+const SUFFIX: &str = "lock"; // suffix of the file that is locked, after the name of the database
 
 /// The right, until it is dropped. The system withdraws it from a program that ends in any way.
 #[derive(Debug)]
@@ -20,9 +18,6 @@ pub struct Alone {
 
 impl Alone {
     /// Takes the right for an existing file; `None` if another program holds it.
-    ///
-    /// # Errors
-    /// Errors of the locked file next to the database.
     pub fn take(database: &Path) -> io::Result<Option<Self>> {
         // All links to the database share one file.
         let path = fs::canonicalize(database)?.with_added_extension(SUFFIX);
@@ -41,7 +36,6 @@ impl Alone {
 
 impl Drop for Alone {
     fn drop(&mut self) {
-        // A remaining file is harmless.
         let _ = fs::remove_file(&self.path);
     }
 }

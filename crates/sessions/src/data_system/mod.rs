@@ -1,8 +1,7 @@
 //! The Data System's database, and keepers that may wait for the disk and the network.
 //!
-//! A tick must not wait for either: [`Threaded`] is a keeper on a thread, with the database in this process
-//! ([`Store`]) or with a server in another process ([`Agent`]). With a server, updates stay on the controller's
-//! disk until they are answered ([`Outbox`]).
+//! A tick must not wait for either: [`Threaded`] is a keeper on a thread, with the database in this process ([`Store`])
+//! or with a server in another one ([`Agent`]).
 
 mod agent;
 mod alone;
@@ -21,7 +20,6 @@ pub use outbox::{Outbox, OutboxError};
 pub use store::{Store, StoreError, Visit};
 pub use thread::{Pace, Threaded};
 
-/// The controller's end of a Data System on a thread.
 pub type DataSystem = neighbours::data_system::DataSystem<Threaded>;
 
 /// A Data System with a database in this process, which answers a command after at least `answer_ticks` ticks.
@@ -30,8 +28,7 @@ pub fn here(store: Store, answer_ticks: u64, pace: Pace) -> DataSystem {
     DataSystem::new(Threaded::here(store, pace), answer_ticks)
 }
 
-/// A Data System in another process. In a run that waits, its answers take effect after as many ticks as those
-/// of a server in this process, so that both runs are equal. On the grid they take effect on arrival.
+/// A Data System in another process. In a run that waits, its answers take as many ticks as those of a server here.
 #[must_use]
 pub fn elsewhere(agent: Agent, pace: Pace) -> DataSystem {
     let ticks = if pace == Pace::Wait { ANSWER_TICKS } else { 0 };

@@ -1,22 +1,17 @@
 //! Unanswered updates for the Data System, on the controller's disk.
 //!
 //! An update is stored here under a new number before it is sent, and deleted when the Data System has answered it. If
-//! the run is killed in between, the next run sends it with the same number, and the Data System executes it once. The
-//! file is an SQLite database whose journal is flushed to the disk before an update is sent.
-//!
-//! File and journal have reserved space: updates can be stored even if a log fills the disk. The file has free
-//! pages, and the write-ahead journal is overwritten from its start when [`CHECKPOINT`] pages of it are used.
+//! the run is killed, the next run sends it with the same number, and the Data System executes it once. The journal is
+//! flushed to the disk before. File and journal have reserved space: a log may fill the disk.
 
 use std::path::{Path, PathBuf};
 
 use neighbours::data_system::command::{DML, STRING_AT};
 use rusqlite::{Connection, ErrorCode, params};
 
-/// Application ID in the file of the outbox: "RCSO".
-const APPLICATION_ID: i32 = 0x5243_534F;
+const APPLICATION_ID: i32 = 0x5243_534F; // application ID in the file of the outbox: "RCSO"
 
-/// Reserved bytes in the file, for some hundred updates.
-const RESERVE: u32 = 256 * 1024;
+const RESERVE: u32 = 256 * 1024; // reserved bytes in the file, for some hundred updates
 /// Pages of the journal after which they are copied to the file: much less than the reserved space.
 const CHECKPOINT: u32 = 16;
 
@@ -40,7 +35,6 @@ pub enum OutboxError {
         .file.display()
     )]
     InUse { file: PathBuf },
-    /// The file belongs to another program.
     #[error("{}: updates for the Data System were expected, this file belongs to another program", .file.display())]
     Foreign { file: PathBuf },
 }
@@ -60,9 +54,6 @@ pub struct Kept {
 
 impl Outbox {
     /// Open the outbox in a file; creates the file if it does not exist. The file is locked against other processes.
-    ///
-    /// # Errors
-    /// [`OutboxError`].
     pub fn open(file: &Path) -> Result<Self, OutboxError> {
         let failed = |source| failure(file, source);
         let mut connection = Connection::open(file).map_err(failed)?;
@@ -82,11 +73,7 @@ impl Outbox {
         Ok(Self { connection, file: file.to_owned() })
     }
 
-    /// Store an update and return its number. An update equal to the last stored one is a repetition and has
-    /// its number.
-    ///
-    /// # Errors
-    /// [`OutboxError`]; the update is then not stored.
+    /// Store an update and return its number. One equal to the last stored one is a repetition and has its number.
     pub fn keep(&mut self, command: &[u8; DML]) -> Result<u16, OutboxError> {
         self.store(command).map_err(|source| failure(&self.file, source))
     }
@@ -109,10 +96,6 @@ impl Outbox {
         Ok(number)
     }
 
-    /// All stored updates, the oldest first.
-    ///
-    /// # Errors
-    /// [`OutboxError`].
     pub fn pending(&self) -> Result<Vec<Kept>, OutboxError> {
         self.read().map_err(|source| failure(&self.file, source))
     }
@@ -123,10 +106,6 @@ impl Outbox {
         rows.query_map([], read)?.collect()
     }
 
-    /// Delete an update that was answered.
-    ///
-    /// # Errors
-    /// [`OutboxError`].
     pub fn strike_out(&self, number: u16) -> Result<(), OutboxError> {
         let deleted = self.connection.execute("DELETE FROM pending WHERE number = ?1", params![number]);
         deleted.map(drop).map_err(|source| failure(&self.file, source))
@@ -148,7 +127,6 @@ fn reserve(connection: &mut Connection) -> rusqlite::Result<()> {
     transaction.execute("INSERT INTO reserve (bytes) VALUES (zeroblob(?1))", params![RESERVE])?;
     transaction.commit()?;
     connection.execute("DELETE FROM reserve", [])?;
-    // The journal keeps its length, and is overwritten from its start.
     connection.query_row("PRAGMA wal_checkpoint(RESTART)", [], |_| Ok(()))?;
     connection.pragma_update(None, "wal_autocheckpoint", CHECKPOINT)
 }

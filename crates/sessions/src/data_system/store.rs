@@ -1,14 +1,14 @@
 //! The database: items, devices, storage positions, and the past places of every item, in one SQLite file.
 //!
-//! The number identifies an item: a machined blank keeps its number and changes its name. Items without a number are
-//! identified by name. A report of a known position changes nothing, so a repeated report has no further effect.
+//! The number identifies an item: a machined blank keeps it and changes its name. Items without a number are identified
+//! by name. A repeated report has no further effect.
 //!
 //! ```sql
 //! SELECT * FROM whereabouts WHERE number = '17';   -- where it is
 //! SELECT * FROM history WHERE number = '17';       -- where it has been
 //! ```
 //!
-//! The file has a write-ahead journal, so answered reports survive the end of a killed program.
+//! Answered reports survive the end of a killed program.
 
 use std::{
     io,
@@ -20,8 +20,7 @@ use rusqlite::{Connection, OptionalExtension as _, Row, TransactionBehavior, par
 
 use super::alone::Alone;
 
-/// Application ID in the file of the database: "RCS2".
-const APPLICATION_ID: i32 = 0x5243_5332;
+const APPLICATION_ID: i32 = 0x5243_5332; // application ID in the file of the database: "RCS2"
 const VERSION: i32 = 2;
 
 /// Tables new in version 2: the controllers that connect, the last number of each, and the last command under a number.
@@ -80,7 +79,6 @@ const TABLES: &str = "
         ORDER BY report.id;
 ";
 
-/// A past place of an item.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Visit {
     /// Time of the report, UTC, in the format of ISO 8601.
@@ -96,38 +94,30 @@ pub struct Visit {
 pub enum StoreError {
     #[error("{}: {source}", .file.display())]
     Sqlite { file: PathBuf, source: rusqlite::Error },
-    /// The file belongs to another program.
     #[error("{}: a data base of items was expected, this one belongs to another program", .file.display())]
     Foreign { file: PathBuf },
-    /// Another program writes to the file.
     #[error(
         "{}: another run or Data System uses this database: end it, or name another database",
         .file.display()
     )]
     InUse { file: PathBuf },
-    /// The file that marks the user of the database cannot be locked.
     #[error("{}: the file beside it that shows who uses it cannot be locked: {source}", .file.display())]
     Lock { file: PathBuf, source: io::Error },
     #[error("{}: tables of version {VERSION} were expected, found version {found}", .file.display())]
     Version {
         file: PathBuf,
-        /// Version of the tables in the file.
-        found: i32,
+        found: i32, // version of the tables in the file
     },
 }
 
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,
-    /// Held by a writing program, and released after the connection is closed.
-    _alone: Option<Alone>,
+    _alone: Option<Alone>, // held by a writing program, and released after the connection is closed
 }
 
 impl Store {
     /// A database in memory, which is lost at the end of the program.
-    ///
-    /// # Errors
-    /// [`StoreError::Sqlite`].
     pub fn in_memory() -> Result<Self, StoreError> {
         let file = PathBuf::from(":memory:");
         let connection = Connection::open_in_memory()
@@ -135,20 +125,14 @@ impl Store {
         Self::with_tables(connection, &file)
     }
 
-    /// Open the database in a file, or create the file.
-    ///
-    /// # Errors
-    /// [`StoreError`] if the file cannot be opened or is not a database of items.
+    /// Open the database in a file, which is created if necessary.
     pub fn open(file: &Path) -> Result<Self, StoreError> {
         let connection =
             Connection::open(file).map_err(|source| StoreError::Sqlite { file: file.to_owned(), source })?;
         Self::with_tables(connection, file)
     }
 
-    /// Open the database in a file, or create the file, for a writing program.
-    ///
-    /// # Errors
-    /// The errors of [`Self::open`], and [`StoreError::InUse`] if another program writes to it.
+    /// Open or create the database for writing. Fails with [`StoreError::InUse`] if another program writes to it.
     pub fn open_alone(file: &Path) -> Result<Self, StoreError> {
         let connection =
             Connection::open(file).map_err(|source| StoreError::Sqlite { file: file.to_owned(), source })?;
@@ -186,7 +170,6 @@ impl Store {
             let transaction =
                 connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(failed)?;
             if number(&transaction, "application_id")? == APPLICATION_ID {
-                // Another process has meanwhile created the tables.
                 transaction.commit().map_err(failed)?;
                 return Self::with_tables(connection, file);
             }
@@ -203,10 +186,7 @@ impl Store {
         Ok(Self { connection, _alone: None })
     }
 
-    /// The places where the item with a number has been, the oldest first.
-    ///
-    /// # Errors
-    /// Errors of SQLite.
+    /// The places where the item with a number has been, the oldest first. Errors are those of SQLite.
     pub fn history(&self, number: &str) -> rusqlite::Result<Vec<Visit>> {
         let read = |row: &Row<'_>| {
             Ok(Visit { at: row.get(0)?, client: row.get(1)?, position: row.get(2)?, sector: row.get(3)? })

@@ -12,7 +12,6 @@ use rcs_core::{
 
 use super::*;
 
-/// A client with its command buffer.
 struct Client {
     system: DataSystem,
     command: DataBaseCommand,
@@ -40,7 +39,6 @@ impl Client {
         self.command = DataBaseCommand { number: self.command.number + 1, command, ..self.command };
     }
 
-    /// Write a command and step until it is answered; returns the report.
     fn ask(&mut self, command: DataBaseVerb) -> DataBaseReport {
         self.write(command);
         loop {
@@ -100,7 +98,7 @@ fn updates_reach_the_database_through_the_mailboxes() {
 }
 
 #[test]
-fn a_refusal_says_why() {
+fn refusal_has_its_reason() {
     let mut client = Client::new(0, Pace::Wait);
     assert_eq!(client.ask(DataBaseVerb::Startup), DataBaseReport::Refused);
     assert_eq!(client.ask(DataBaseVerb::None), DataBaseReport::Refused);

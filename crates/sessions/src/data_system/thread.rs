@@ -1,8 +1,7 @@
 //! The keeper of a Data System on a separate thread: the disk must not delay a tick.
 //!
-//! A run in fast clock waits for the thread when an answer is due, so that its ticks are the same in every run.
-//! A run on the 40 ms grid uses the answer once it has arrived. At its end a run does not wait for a server in
-//! another process, which may not answer for a long time.
+//! A run in fast clock waits when an answer is due, so that its ticks are the same in every run. On the 40 ms grid it
+//! uses the answer once it has arrived. At its end a run does not wait for a server in another process.
 
 use std::{
     sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
@@ -24,7 +23,6 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// Time between two checks for a server while no command is in progress.
 const IDLE: Duration = Duration::from_millis(500);
 
-/// Whether a run waits for the server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// For runs in fast clock: the tick waits for an answer that is due.
@@ -36,17 +34,14 @@ pub enum Pace {
 enum Request {
     Execute(u16, Vec<u8>),
     Items,
-    /// Check for a server in another process.
     Look,
 }
 
 enum Response {
-    /// The answer to the command of this number.
     Executed(u16, Answer),
     /// The command of this number has no answer.
     Silent(u16),
     Items(rusqlite::Result<Vec<Item>>),
-    /// The thread has checked for a server in another process.
     Looked,
 }
 
@@ -74,7 +69,6 @@ impl Place {
         }
     }
 
-    /// Work while no request is pending.
     fn idle(&mut self) {
         if let Self::Elsewhere(agent) = self {
             agent.idle();
@@ -93,8 +87,7 @@ impl Place {
 pub struct Threaded {
     pace: Pace,
     remarks: Receiver<Remark>,
-    /// Ends the wait for a server in another process, if there is one.
-    stop_handle: Option<StopHandle>,
+    stop_handle: Option<StopHandle>, // ends the wait for a server in another process, if there is one
     requests: Option<Sender<Request>>,
     responses: Receiver<Response>,
     thread: Option<JoinHandle<()>>,
@@ -136,9 +129,8 @@ impl Threaded {
         Self { pace, remarks, stop_handle: None, requests: Some(requests), responses, thread: Some(thread) }
     }
 
-    /// Check for a server in another process. If the run waits for answers, also wait for the result: otherwise
-    /// the thread would report a server that connected just before the first tick only after [`IDLE`], which is
-    /// many ticks in fast clock.
+    /// Check for a server in another process. If the run waits for answers, wait for the result: [`IDLE`] is many ticks
+    /// in fast clock.
     pub fn look(&self) {
         if self.pace == Pace::Poll || self.stop_handle.is_none() || !self.send(Request::Look) {
             return;
@@ -155,7 +147,6 @@ impl Threaded {
         self.requests.as_ref().is_some_and(|requests| requests.send(request).is_ok())
     }
 
-    /// The next response of the thread, if any.
     fn response(&self) -> Result<Option<Response>, Dead> {
         match self.pace {
             Pace::Poll => match self.responses.try_recv() {
@@ -169,7 +160,6 @@ impl Threaded {
     }
 }
 
-/// The thread has ended and does not answer.
 struct Dead;
 
 impl Keeper for Threaded {
@@ -182,7 +172,6 @@ impl Keeper for Threaded {
             match self.response() {
                 Ok(Some(Response::Executed(of, answer))) if of == id => return Reply::Answer(answer),
                 Ok(Some(Response::Silent(of))) if of == id => return Reply::Silent,
-                // An answer to an earlier command is too late.
                 Ok(Some(_)) => {}
                 Ok(None) => return Reply::Pending,
                 Err(Dead) => return Reply::Dead,
@@ -211,7 +200,6 @@ impl Keeper for Threaded {
 impl Drop for Threaded {
     fn drop(&mut self) {
         if let Some(stop_handle) = &self.stop_handle {
-            // Unanswered updates stay in the outbox.
             stop_handle.stop();
         }
         // Closing the channel of requests ends the thread, which closes the database, so that it leaves no journal.
@@ -223,7 +211,6 @@ impl Drop for Threaded {
             thread::sleep(Duration::from_millis(1));
         }
         if thread.is_finished() {
-            // The thread has no result, and a panic in it was reported.
             let _ = thread.join();
         }
     }

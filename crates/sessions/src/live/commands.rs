@@ -1,7 +1,7 @@
 //! Requests of a viewer to a run: requests of an operator as services, and the velocity knob as a parameter.
 //!
-//! This module does not control the robot. A request is a line for the run's operator socket (crate
-//! `operator`), and the run checks it like those of a console. It requires the token that the run has printed.
+//! A request is a line for the run's operator socket ([`crate::operator`]), and is checked like those of a console. It
+//! requires the token that the run has printed.
 
 use std::{
     path::PathBuf,
@@ -32,7 +32,6 @@ impl Knob {
 #[derive(Clone, Debug)]
 pub struct Access {
     pub socket: PathBuf,
-    /// The token that a request must contain.
     pub token: Token,
 }
 
@@ -42,9 +41,6 @@ pub struct Token(String);
 
 impl Token {
     /// A new token of 128 random bits.
-    ///
-    /// # Errors
-    /// [`NoRandom`](crate::live::NoRandom) if the operating system supplies no random numbers.
     pub fn random() -> Result<Self, crate::live::NoRandom> {
         crate::live::protocol::random_word().map(Self)
     }
@@ -69,7 +65,6 @@ impl std::fmt::Debug for Token {
     }
 }
 
-/// A request that a viewer can make.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Service {
     pub name: &'static str,
@@ -91,7 +86,6 @@ pub const SERVICES: [Service; 9] = [
 ];
 
 impl Service {
-    /// The service with a number, counted from 1.
     #[must_use]
     pub fn of(number: u32) -> Option<Self> {
         let place = usize::try_from(number).ok()?.checked_sub(1)?;

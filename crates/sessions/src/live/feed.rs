@@ -1,8 +1,8 @@
 //! The messages for clients: channels, the newest message of each, those of the last minute, and a queue per client.
 //!
-//! A client that subscribes receives the newest message of the channel at once, with the present time, even if that
-//! message was sent only once, at the start of the run. For transforms it receives those of all links. A client that
-//! has requested the past instead receives the state at its beginning, and all later messages with their times.
+//! A client that subscribes receives the newest message of the channel at once, with the present time; for transforms
+//! those of all links. A client that has requested the past instead receives the state at its beginning, and all later
+//! messages with their times.
 
 use std::{
     collections::{BTreeMap, VecDeque},
@@ -16,7 +16,6 @@ use crate::live::{
     protocol,
 };
 
-/// Greatest number of messages in a client's queue.
 pub const QUEUE: usize = 4096;
 /// Greatest number of bytes in a client's queue; a single longer message is accepted.
 pub const QUEUE_BYTES: usize = 8 << 20;
@@ -39,10 +38,8 @@ pub struct Feed(Arc<Mutex<Inner>>);
 #[derive(Debug, Default)]
 struct Inner {
     channels: BTreeMap<u16, Known>,
-    /// Number of bytes in the pasts of all channels.
-    past_bytes: usize,
-    /// Time of the newest message, ns.
-    now: u64,
+    past_bytes: usize, // number of bytes in the pasts of all channels
+    now: u64,          // time of the newest message, ns
     queues: Vec<Arc<Queue>>,
     is_over: bool,
 }
@@ -54,13 +51,10 @@ struct Known {
     past: Past,
 }
 
-/// The last minute of a channel.
 #[derive(Debug)]
 struct Past {
-    /// Messages with their times, ns, the oldest first.
-    messages: VecDeque<(u64, Arc<[u8]>)>,
-    /// The newest data before these messages.
-    before: Newest,
+    messages: VecDeque<(u64, Arc<[u8]>)>, // messages with their times, ns, the oldest first
+    before: Newest,                       // the newest data before these messages
     /// True if no past is kept: the messages are differences, which are unreadable without all earlier messages.
     is_off: bool,
 }
@@ -142,14 +136,12 @@ impl Feed {
         lock(&self.0).queues.retain(|known| !Arc::ptr_eq(known, queue));
     }
 
-    /// Returns true if a channel with this number exists.
     #[must_use]
     pub fn has(&self, channel: u16) -> bool {
         lock(&self.0).channels.contains_key(&channel)
     }
 
-    /// Sends the messages of a channel to a client: from now on, beginning with the newest one, or from
-    /// `past_s` seconds ago on, beginning with the state at that time.
+    /// Sends the messages of a channel to a client, beginning with the newest one, or with the state `past_s` ago.
     pub fn subscribe(&self, queue: &Queue, channel: u16, subscription: u32, past_s: u64) {
         let inner = lock(&self.0);
         let mut waiting = lock(&queue.0);
@@ -177,13 +169,11 @@ impl Feed {
         lock(&self.0).queues.len()
     }
 
-    /// Returns true if a client has subscribed to a channel.
     #[must_use]
     pub fn is_watched(&self) -> bool {
         lock(&self.0).queues.iter().any(|queue| !lock(&queue.0).subscriptions.is_empty())
     }
 
-    /// Returns true if the feed has ended.
     #[must_use]
     pub fn is_over(&self) -> bool {
         lock(&self.0).is_over
@@ -250,20 +240,15 @@ impl Drop for Tapped {
     }
 }
 
-/// An item of a client's queue.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Item {
-    /// A text message of the protocol.
     Text(Arc<str>),
     /// The present time, ns.
     Time(u64),
     Message {
-        /// The client's number of the subscription.
-        subscription: u32,
-        /// Time of the message, ns.
-        time: u64,
-        /// The message as in the log.
-        data: Arc<[u8]>,
+        subscription: u32, // the client's number of the subscription
+        time: u64,         // ns
+        data: Arc<[u8]>,   // the message as in the log
     },
 }
 
@@ -285,14 +270,11 @@ pub struct Queue(Mutex<Waiting>);
 
 #[derive(Debug, Default)]
 struct Waiting {
-    /// The client's subscription numbers by channel.
-    subscriptions: BTreeMap<u16, u32>,
+    subscriptions: BTreeMap<u16, u32>, // the client's subscription numbers by channel
     /// Items that are never dropped: new channels, and the first messages of each subscription.
     first: VecDeque<Item>,
-    /// Items that can be dropped, the oldest first.
-    later: VecDeque<Item>,
-    /// Number of bytes in `later`.
-    bytes: usize,
+    later: VecDeque<Item>, // items that can be dropped, the oldest first
+    bytes: usize,          // number of bytes in `later`
     dropped: u64,
     is_over: bool,
 }
@@ -332,13 +314,11 @@ impl Queue {
         waiting.bytes = waiting.later.iter().map(Item::bytes).sum();
     }
 
-    /// Number of messages dropped so far.
     #[must_use]
     pub fn dropped(&self) -> u64 {
         lock(&self.0).dropped
     }
 
-    /// Returns true if the feed is over and the queue is empty.
     #[must_use]
     pub fn is_over(&self) -> bool {
         let waiting = lock(&self.0);

@@ -1,15 +1,14 @@
 //! Keeps the newest pose of each link, from messages that contain only the moved links.
 //!
-//! `foxglove.FrameTransforms` has transforms as field 1; field 3 of a transform, `child_frame_id`, names its link. A
-//! viewer that connects during the run needs the transforms of all links.
+//! `foxglove.FrameTransforms` has transforms as field 1; their field 3, `child_frame_id`, names the link. A viewer that
+//! connects during the run needs all links.
 
 use std::collections::BTreeMap;
 
 use record::proto::wire::{self, Fields, Value};
 
 pub const SCHEMA: &str = "foxglove.FrameTransforms";
-/// Greatest length of a transform, bytes; a longer field is not a transform.
-const LONGEST: usize = 4096;
+const LONGEST: usize = 4096; // greatest length of a transform, bytes; a longer field is not a transform
 const LINKS: usize = 4096;
 
 /// Encoded transforms, in the order of the first message of each link.
@@ -34,7 +33,6 @@ impl Frames {
         }
     }
 
-    /// A message with the transforms of all links.
     pub fn message(&self) -> Vec<u8> {
         let mut message = Vec::new();
         self.transforms.iter().for_each(|transform| wire::bytes(1, transform, &mut message));

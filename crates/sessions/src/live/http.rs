@@ -1,7 +1,6 @@
 //! The first request of a connection: a browser requests the page, a viewer a WebSocket.
 //!
-//! Only `GET /` has a page. Its host name must be one of this machine, so that a page of another site whose
-//! name resolves to this machine (DNS rebinding) receives nothing.
+//! Only `GET /` has a page. Its host name must be one of this machine, against DNS rebinding.
 
 use std::io::{Read, Write};
 
@@ -12,8 +11,7 @@ use tungstenite::{
     http::{HeaderMap, StatusCode, header},
 };
 
-/// Greatest length of a request with its headers, bytes.
-const LONGEST: usize = 16 * 1024;
+const LONGEST: usize = 16 * 1024; // greatest length of a request with its headers, bytes
 /// Names of this machine in the header `Host`.
 const HERE: [&str; 3] = ["127.0.0.1", "localhost", "[::1]"];
 /// Headers of every answer. They prevent frames, in which a page can be disguised.
@@ -21,7 +19,6 @@ const HEADERS: &str = "Connection: close\r\nCache-Control: no-store\r\nX-Content
                        Referrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n\
                        Content-Security-Policy: frame-ancestors 'none'\r\n";
 
-/// A refusal: the status, and the reason for the user.
 pub type Refusal = (StatusCode, String);
 
 /// A request, and the bytes that followed it.
@@ -30,10 +27,7 @@ pub struct First {
     pub rest: Vec<u8>,
 }
 
-/// Reads the first request of a connection.
-///
-/// # Errors
-/// A refusal; `None` if the connection has ended.
+/// Reads the first request of a connection. Errors: a refusal; `None` if the connection has ended.
 pub fn read(stream: &mut impl Read) -> Result<First, Option<Refusal>> {
     let mut bytes = Vec::new();
     let mut part = [0; 4096];
@@ -71,10 +65,7 @@ pub fn is_upgrade(headers: &HeaderMap) -> bool {
     headers.contains_key(header::UPGRADE)
 }
 
-/// Checks a request for the page.
-///
-/// # Errors
-/// A refusal if the address is another one, or the host is not this machine.
+/// Checks a request for the page. Errors: a refusal if the address is another one, or the host is not this machine.
 pub fn check(request: &Request, has_page: bool) -> Result<(), Refusal> {
     if host(request.headers()).is_none() {
         let why = "this page has the name 127.0.0.1 or localhost: open it under one of them\n";
@@ -116,7 +107,6 @@ fn send(stream: &mut impl Write, status: StatusCode, kind: &str, extra: &str, bo
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{extra}{HEADERS}\r\n{body}",
         body.len()
     );
-    // A client that has disconnected receives no answer.
     let _ = stream.write_all(answer.as_bytes());
     let _ = stream.flush();
 }

@@ -1,7 +1,6 @@
 //! Origins of the web pages that may connect.
 //!
-//! A browser sends the origin of the page with each WebSocket request. Without a check, any page open on the
-//! machine could watch and command the robot.
+//! Without this check, any page open on the machine could watch and command the robot.
 
 use std::{fmt, str::FromStr};
 

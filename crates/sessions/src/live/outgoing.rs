@@ -1,7 +1,6 @@
 //! The order of frames to a client: large messages are split into pieces, and a ping follows each piece.
 //!
-//! The answer to a ping shows that the client has read everything before it. A slow client takes seconds to
-//! read a message of a megabyte; the pings between its pieces show that it reads.
+//! The answer to a ping shows that a slow client has read everything before it.
 
 use std::collections::VecDeque;
 
@@ -18,20 +17,15 @@ use crate::live::{
     protocol,
 };
 
-/// Greatest number of bytes of a frame, and between two pings.
-const PIECE: usize = 32 * 1024;
+const PIECE: usize = 32 * 1024; // greatest number of bytes of a frame, and between two pings
 /// Number of waiting replies after which no more messages of the client are read.
 const REPLIES: usize = 16;
 
-/// Frames that wait for a client.
 #[derive(Debug, Default)]
 pub struct Outgoing {
-    /// The rest of a partly sent message.
-    rest: Option<Bytes>,
-    /// Messages that precede the queue.
-    replies: VecDeque<Message>,
-    /// Number of bytes since the last ping.
-    unchecked: usize,
+    rest: Option<Bytes>,        // the rest of a partly sent message
+    replies: VecDeque<Message>, // messages that precede the queue
+    unchecked: usize,           // number of bytes since the last ping
 }
 
 impl Outgoing {
@@ -52,7 +46,6 @@ impl Outgoing {
         self.rest.is_none() && self.replies.is_empty()
     }
 
-    /// Returns true if a ping must be written before the next frame.
     #[must_use]
     pub const fn is_ping_due(&self) -> bool {
         self.unchecked >= PIECE
@@ -62,7 +55,6 @@ impl Outgoing {
         self.unchecked = 0;
     }
 
-    /// Takes the next frame or message to write.
     pub fn next(&mut self, queue: &Queue) -> Option<Message> {
         if let Some(rest) = self.rest.take() {
             return Some(self.piece(rest, Data::Continue));

@@ -1,7 +1,7 @@
 //! Messages of `foxglove.websocket.v1` and `foxglove.sdk.v1`, which are the same for the parts used here.
 //!
-//! Text is JSON with a field `op`; binary messages begin with an operation code, and their numbers are
-//! little-endian. Source: Foxglove WebSocket protocol v1, `docs/spec.md` of github.com/foxglove/ws-protocol.
+//! Text is JSON with a field `op`; binary messages begin with an operation code, little-endian. Source: Foxglove
+//! WebSocket protocol v1, `docs/spec.md` of github.com/foxglove/ws-protocol.
 
 use std::collections::BTreeMap;
 
@@ -10,24 +10,20 @@ use record::tap::Channel;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// The subprotocols, the preferred one first.
-pub const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
+pub const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"]; // the preferred one first
 /// Binary schema encodings, which JSON contains as base64.
 const BINARY_SCHEMAS: [&str; 2] = ["protobuf", "flatbuffer"];
 
-/// Operation codes of binary messages to the client.
 mod to_client {
     pub const MESSAGE: u8 = 0x01;
     pub const TIME: u8 = 0x02;
     pub const SERVICE_RESPONSE: u8 = 0x03;
 }
 
-/// Operation codes of binary messages from the client.
 mod from_client {
     pub const SERVICE_REQUEST: u8 = 0x02;
 }
 
-/// A text message of a client.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "op", rename_all = "camelCase")]
 pub enum Request {
@@ -36,46 +32,38 @@ pub enum Request {
     },
     #[serde(rename_all = "camelCase")]
     Unsubscribe {
-        /// The client's numbers of the subscriptions.
-        subscription_ids: Vec<u32>,
+        subscription_ids: Vec<u32>, // the client's numbers of the subscriptions
     },
-    /// Read the values of parameters.
     #[serde(rename_all = "camelCase")]
     GetParameters {
-        /// Names of the parameters; an empty list means all.
-        parameter_names: Vec<String>,
+        parameter_names: Vec<String>, // names of the parameters; an empty list means all
         id: Option<String>,
     },
     SetParameters {
-        /// The parameters with their new values.
-        parameters: Vec<Parameter>,
+        parameters: Vec<Parameter>, // the parameters with their new values
         id: Option<String>,
     },
     #[serde(rename_all = "camelCase")]
     SubscribeParameterUpdates {
-        /// Names of the parameters; an empty list means all.
-        parameter_names: Vec<String>,
+        parameter_names: Vec<String>, // names of the parameters; an empty list means all
     },
     #[serde(rename_all = "camelCase")]
     UnsubscribeParameterUpdates {
-        /// Names of the parameters; an empty list means all.
-        parameter_names: Vec<String>,
+        parameter_names: Vec<String>, // names of the parameters; an empty list means all
     },
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     pub name: String,
-    /// Value; null if the parameter has none.
     #[serde(default)]
-    pub value: Value,
+    pub value: Value, // null if the parameter has none
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ServiceCall {
     pub service: u32,
-    /// The client's number of the call.
-    pub call: u32,
+    pub call: u32, // the client's number
     pub encoding: String,
     pub payload: Vec<u8>,
 }
@@ -115,7 +103,6 @@ pub fn service_response(service: u32, call: u32, payload: &Value) -> Vec<u8> {
     bytes
 }
 
-/// The message for a failed service call.
 #[must_use]
 pub fn service_failure(service: u32, call: u32, why: &str) -> String {
     json!({ "op": "serviceCallFailure", "serviceId": service, "callId": call, "message": why }).to_string()
@@ -126,7 +113,6 @@ pub fn advertise_services(services: &[Value]) -> String {
     json!({ "op": "advertiseServices", "services": services }).to_string()
 }
 
-/// The message with values of parameters.
 #[must_use]
 pub fn parameter_values(parameters: &[Parameter], id: Option<&str>) -> String {
     match id {
@@ -136,31 +122,24 @@ pub fn parameter_values(parameters: &[Parameter], id: Option<&str>) -> String {
     .to_string()
 }
 
-/// A client's subscription to a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Subscription {
-    /// The client's number of the subscription.
-    pub id: u32,
+    pub id: u32, // the client's number
     pub channel_id: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StatusLevel {
     Warning,
-    /// A request was not executed.
     Error,
 }
 
-/// Error: the operating system supplies no random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the system gives no random numbers: {0}")]
 pub struct NoRandom(#[from] getrandom::Error);
 
 /// A word of 128 random bits, in hexadecimal.
-///
-/// # Errors
-/// [`NoRandom`] if the operating system supplies no random numbers.
 pub fn random_word() -> Result<String, NoRandom> {
     let mut bits = [0; 16];
     getrandom::fill(&mut bits)?;
@@ -171,25 +150,19 @@ pub fn random_word() -> Result<String, NoRandom> {
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ServerInfo {
-    /// Name of the server, shown by the viewer.
-    pub name: String,
+    pub name: String, // shown by the viewer
     pub capabilities: Vec<&'static str>,
     pub supported_encodings: Vec<&'static str>,
     pub metadata: BTreeMap<String, String>,
-    /// Identifier of the session, different for each run.
-    pub session_id: String,
+    pub session_id: String, // different for each run
 }
 
 impl ServerInfo {
-    /// Facts with a new session identifier.
-    ///
-    /// # Errors
-    /// [`NoRandom`] if the operating system supplies no random numbers.
+    /// Facts with a new session identifier. Fails with [`NoRandom`] if the operating system supplies no random numbers.
     pub fn new() -> Result<Self, NoRandom> {
         Ok(Self { session_id: random_word()?, ..Self::default() })
     }
 
-    /// The `serverInfo` message.
     #[must_use]
     pub fn encode(&self) -> String {
         let mut message = json!(self);

@@ -2,11 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-/// Greatest time that is added between two checks. A longer gap means that this program was stopped, or the
-/// machine was busy, which is not the client's fault.
+/// A longer gap between two checks means that this program was stopped, which is not the client's fault.
 const GAP: Duration = Duration::from_millis(100);
 
-/// The time for which a client has not read while this program was running.
 #[derive(Debug)]
 pub struct Silence {
     looked: Instant,

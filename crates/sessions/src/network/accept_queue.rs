@@ -1,8 +1,8 @@
 //! The accept queue: connections that have not yet sent a hello.
 //!
-//! It is short, so that unknown clients cost the run little. When it is full, the oldest connection without a hello is
-//! closed after a minimum time: clients that send nothing, or single bytes, cannot block other clients. A refused
-//! connection keeps its slot for the same time, so that clients can neither guess quickly nor fill the log.
+//! It is short, so that unknown clients cost little. When it is full, the oldest connection without a hello is closed
+//! after a minimum time: silent clients cannot block others. A refused connection keeps its slot for that time, so that
+//! clients can neither guess quickly nor fill the log.
 
 use std::{
     io,
@@ -14,7 +14,6 @@ use std::{
 
 use super::shared::locked;
 
-/// Greatest number of connections without a hello.
 pub(super) const SLOTS: usize = 8;
 /// Minimum time in a slot: enough for a hello, and the penalty for a wrong one.
 pub(super) const SAFE: Duration = Duration::from_secs(1);
@@ -43,11 +42,7 @@ pub(super) struct Slot<'a> {
 }
 
 impl AcceptQueue {
-    /// Give a connection a slot, if necessary that of the oldest one. Returns its ticket, or `None` without a
-    /// free slot.
-    ///
-    /// # Errors
-    /// If the system has no descriptor left.
+    /// Give a connection a slot, if necessary that of the oldest one. Returns its ticket, if a slot is free.
     pub fn enter(&self, stream: &UnixStream) -> io::Result<Option<u64>> {
         let stream = stream.try_clone()?;
         let mut inner = locked(&self.inner);
@@ -60,7 +55,6 @@ impl AcceptQueue {
         let ticket = inner.last;
         let slot = inner.slots.iter_mut().find(|slot| waited(slot) == longest);
         if let Some(before) = slot.and_then(|slot| slot.replace(Waiting { ticket, since: now, stream })) {
-            // It may be closed already.
             let _ = before.stream.shutdown(Shutdown::Both);
         }
         Ok(Some(ticket))
@@ -90,7 +84,6 @@ mod tests {
         UnixStream::pair().unwrap()
     }
 
-    /// Let all connections age by a time.
     fn wait(queue: &AcceptQueue, time: Duration) {
         locked(&queue.inner).slots.iter_mut().flatten().for_each(|waiting| waiting.since -= time);
     }

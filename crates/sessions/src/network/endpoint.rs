@@ -1,12 +1,9 @@
 //! The tick's side of the mailboxes of one neighbour.
 //!
-//! Once per tick, [`Endpoint::exchange`] copies the controller's written mailboxes to the network's side, and
-//! those that the neighbour has written back. On the 40 ms grid it takes a lock only if it is free, and
-//! otherwise tries again in the next tick; it neither waits nor allocates. In fast clock it waits for the
-//! neighbour's answer to the pulse of the tick.
-//!
-//! A neighbour connects and disconnects at any time. On connection, the mailboxes that it writes are
-//! initialized (IX), and all that it reads are sent.
+//! Once per tick, [`Endpoint::exchange`] copies the mailboxes both ways. On the 40 ms grid it takes a lock only if it
+//! is free, and otherwise tries again in the next tick; it neither waits nor allocates. In fast clock it waits for the
+//! answer to the pulse. On connection, the mailboxes that the neighbour writes are initialized (IX), and all others are
+//! sent.
 
 use std::{
     fmt, io,
@@ -29,13 +26,11 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Time for which the end of a run waits for its last session to send the disconnect reason.
 const CLOSING_LIMIT: Duration = Duration::from_secs(2);
 
-/// The tick's side.
 pub struct Endpoint {
     shared: Arc<Shared>,
     outgoing: Vec<Mailbox>,
     incoming: Vec<Mailbox>,
-    /// Number of the last session known to the tick.
-    session: u32,
+    session: u32, // number of the last session known to the tick
     events: (Sender<NetEvent>, Receiver<NetEvent>),
     /// Set when the run is to end. The tick then no longer waits for a neighbour.
     interrupted: Arc<AtomicBool>,
@@ -51,10 +46,7 @@ pub struct Presence {
 }
 
 impl Endpoint {
-    /// The initialized mailboxes of a neighbour, which is not yet connected.
-    ///
-    /// # Errors
-    /// If the system has no descriptor left.
+    /// With initialized mailboxes, not yet connected. Fails if the system has no descriptor left.
     pub fn new(role: Role, clock: ClockKind) -> io::Result<Self> {
         Ok(Self {
             shared: Arc::new(Shared::new(role, clock)?),
@@ -73,7 +65,6 @@ impl Endpoint {
         self
     }
 
-    /// True if the run is to end.
     #[must_use]
     pub fn is_interrupted(&self) -> bool {
         self.interrupted.load(Ordering::Relaxed)
@@ -100,19 +91,13 @@ impl Endpoint {
         self.shared.role
     }
 
-    /// A mailbox to the neighbour, for writing.
-    ///
-    /// # Panics
-    /// If the neighbour has no such mailbox.
+    /// A mailbox to the neighbour, for writing. Panics if the neighbour has no such mailbox.
     pub fn outgoing(&mut self, place: Place) -> &mut Mailbox {
         let mailbox = self.outgoing.iter_mut().find(|mailbox| mailbox.place() == place);
         mailbox.unwrap_or_else(|| panic!("{place} does not go to {}", self.shared.role))
     }
 
-    /// A mailbox from the neighbour, as it was at the last exchange.
-    ///
-    /// # Panics
-    /// If the neighbour has no such mailbox.
+    /// A mailbox from the neighbour, as it was at the last exchange. Panics if the neighbour has no such mailbox.
     #[must_use]
     pub fn incoming(&self, place: Place) -> &Mailbox {
         let mailbox = self.incoming.iter().find(|mailbox| mailbox.place() == place);
@@ -124,8 +109,7 @@ impl Endpoint {
         self.events.1.try_recv().ok()
     }
 
-    /// Call once per tick: pass the written mailboxes to the network, and fetch the arrived ones. In fast clock
-    /// this waits for a connected neighbour.
+    /// Once per tick: send the written mailboxes, and fetch the arrived ones. In fast clock it waits for the neighbour.
     pub fn exchange(&mut self, tick: u64) -> Presence {
         let session = self.shared.session.load(Ordering::Acquire);
         let waits = self.shared.clock == ClockKind::Fast && session != 0;
@@ -153,17 +137,16 @@ impl Endpoint {
             // A session that has meanwhile begun is valid from the next tick on.
             self.incoming.iter_mut().for_each(Mailbox::initialize);
         }
-        // A neighbour that has answered the pulse is treated as connected, even if it has disconnected since,
-        // so that a run ends in the same tick every time. After an interruption, when the tick has not waited
-        // for the answer, the session decides.
+        // A neighbour that has answered the pulse is treated as connected, so that a run ends in the same tick every
+        // time. After an interruption the session decides.
         let asked = waits && !self.is_interrupted();
         let connected = answered || (!asked && session != 0 && now == session);
         let connected = connected && !self.shared.is_over();
         Presence { connected, new, was_connected: self.shared.sessions.load(Ordering::Acquire) != 0 }
     }
 
-    /// Wait until the neighbour has answered the pulse or has disconnected, the endpoint was stopped, or the run is to
-    /// end. Returns true if it has answered. A neighbour that does not answer in time loses its session.
+    /// Wait until the neighbour has answered or disconnected, or the run is to end. Returns true if it has answered. A
+    /// neighbour that does not answer in time loses its session.
     fn wait(&self, tick: u64, session: u32) -> bool {
         let mut answered = locked(&self.shared.answered);
         while *answered < tick

@@ -1,14 +1,10 @@
-//! Events of the network: neighbours connect, disconnect, or are refused.
-
 use std::{fmt, time::Duration};
 
 use super::Role;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Disconnect {
-    /// The neighbour has closed the connection.
     Closed,
-    /// The connection broke, with the error.
     Lost(String),
     /// The controller has closed the connection, because no pulse was answered for this time.
     Silent(Duration),
@@ -38,9 +34,7 @@ impl fmt::Display for Disconnect {
 #[non_exhaustive]
 pub enum NetEvent {
     Connected(Role),
-    /// A neighbour has disconnected, with the reason.
     Disconnected(Role, Disconnect),
-    /// A connection was refused, with the reason.
     Refused(String),
 }
 

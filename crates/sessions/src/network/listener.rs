@@ -1,6 +1,6 @@
 //! The controller accepts connections: one thread waits at a socket, and one thread serves each connection.
 //!
-//! The socket admits processes of the same user. All others are refused with a reason, which is also an event.
+//! It admits processes of the same user. All others are refused with a reason, which is also an event.
 
 use std::{io, sync::Arc};
 
@@ -12,7 +12,6 @@ use super::{Address, ClockKind, Endpoint, Operators, server::Server};
 pub enum ListenError {
     #[error("{address}: {source}")]
     Address { address: Address, source: io::Error },
-    /// Another run listens at the address.
     #[error("{0}: another run waits for its neighbours there")]
     InUse(Address),
 }
@@ -24,10 +23,6 @@ pub struct Listener {
 }
 
 impl Listener {
-    /// Accept connections for endpoints at an address.
-    ///
-    /// # Errors
-    /// [`ListenError`].
     pub fn start<'a>(
         address: &Address,
         endpoints: impl IntoIterator<Item = &'a Endpoint>,
@@ -36,9 +31,6 @@ impl Listener {
     }
 
     /// Like [`Listener::start`], but also for operators.
-    ///
-    /// # Errors
-    /// [`ListenError`].
     pub fn with_operators<'a>(
         address: &Address,
         endpoints: impl IntoIterator<Item = &'a Endpoint>,

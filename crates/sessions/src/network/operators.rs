@@ -1,8 +1,5 @@
-//! Operators at the socket of the network (IV): a separate role, whose connections carry lines instead of
-//! mailboxes. Gateways of other machines use it.
-//!
-//! The hello is that of a neighbour with the role [`Role::Operator`](super::Role). After the welcome the connection
-//! belongs to a session of the run, as if the operator had connected to the run's own socket for operators.
+//! Operators at the socket of the network (IV), used by gateways of other machines. The hello has the role
+//! [`Role::Operator`](super::Role); then the connection carries lines, as at the run's own socket for operators.
 
 use std::{
     io,
@@ -15,7 +12,6 @@ use super::NetEvent;
 /// Begins a session of the run over a stream. The bytes were received from the stream after the hello.
 type Enter = Box<dyn Fn(UnixStream, Vec<u8>) -> io::Result<()> + Send + Sync>;
 
-/// Access of a network's operators to a run.
 #[derive(Clone)]
 pub struct Operators {
     enter: Arc<OnceLock<Enter>>,
@@ -31,7 +27,6 @@ impl Operators {
 
     /// Admits operators from now on. Only the first call has an effect.
     pub fn open(&self, enter: impl Fn(UnixStream, Vec<u8>) -> io::Result<()> + Send + Sync + 'static) {
-        // A run is opened once.
         let _ = self.enter.set(Box::new(enter));
     }
 
@@ -46,7 +41,6 @@ impl Operators {
 
     /// Sends an event to the run.
     pub(super) fn tell(&self, event: NetEvent) {
-        // A run that has ended does not receive it.
         let _ = self.events.send(event);
     }
 }

@@ -15,30 +15,21 @@ use super::{
 use neighbours::mailbox::{Mailbox, MailboxError, Place};
 use sockets::Line;
 
-/// Time between two attempts to connect.
-const PAUSE: Duration = Duration::from_millis(50);
-/// Time limit for the end of a connection.
-const CLOSING_LIMIT: Duration = Duration::from_secs(1);
+const PAUSE: Duration = Duration::from_millis(50); // time between two attempts to connect
+const CLOSING_LIMIT: Duration = Duration::from_secs(1); // time limit for the end of a connection
 
-/// The reason why a connection cannot be made, or ends.
 #[derive(Debug, thiserror::Error)]
 pub enum PeerError {
-    /// No controller listens at the address, or the connection broke.
     #[error("{address}: {source}")]
     Line { address: Address, source: io::Error },
-    /// The other side is not a controller, or breaks the protocol.
     #[error("{address}: {source}")]
     Session { address: Address, source: SessionError },
-    /// No data were received for this time.
     #[error("nothing has come from the controller for {} s", .0.as_secs())]
     Silent(Duration),
-    /// The controller has closed the connection without a reason.
     #[error("the controller has closed the connection")]
     Closed,
-    /// The received data do not fit a mailbox.
     #[error(transparent)]
     Mailbox(#[from] MailboxError),
-    /// The controller has closed the connection, with this reason.
     #[error("the controller says: {0}")]
     Disconnected(String),
 }
@@ -68,8 +59,7 @@ struct Connection {
     address: Address,
     line: Line,
     session: Session,
-    /// True until the controller closes the connection.
-    is_open: bool,
+    is_open: bool, // true until the controller closes the connection
 }
 
 pub struct Peer {
@@ -79,28 +69,18 @@ pub struct Peer {
     incoming: Vec<Mailbox>,
 }
 
-/// Connect as an operator: the stream of its session, for [`Client::over`](crate::operator::Client::over).
-///
-/// # Errors
-/// [`PeerError`]; [`PeerError::Disconnected`] if it is refused.
+/// The stream of an operator's session, for [`Client::over`](crate::operator::Client::over).
 pub fn connect_operator(address: &Address) -> Result<UnixStream, PeerError> {
     let (connection, _) = Connection::open(address, Role::Operator)?;
     connection.line.into_stream().map_err(|source| PeerError::Line { address: address.clone(), source })
 }
 
 impl Peer {
-    /// Connect as a neighbour.
-    ///
-    /// # Errors
-    /// [`PeerError`]; [`PeerError::Disconnected`] if it is refused.
     pub fn connect(address: &Address, role: Role) -> Result<Self, PeerError> {
         Self::connect_within(Duration::ZERO, address, role)
     }
 
-    /// Connect, with repeated attempts for a while if no controller answers.
-    ///
-    /// # Errors
-    /// The last [`PeerError`].
+    /// Connect, with repeated attempts for a while if no controller answers. Errors: the last [`PeerError`].
     pub fn connect_within(limit: Duration, address: &Address, role: Role) -> Result<Self, PeerError> {
         let until = Instant::now() + limit;
         let (connection, clock) = loop {
@@ -118,20 +98,13 @@ impl Peer {
         self.clock
     }
 
-    /// A mailbox from the controller.
-    ///
-    /// # Panics
-    /// If it does not go to this neighbour.
+    /// A mailbox from the controller. Panics if it does not go to this neighbour.
     #[must_use]
     pub fn mailbox(&self, place: Place) -> &Mailbox {
         let mailbox = self.incoming.iter().find(|mailbox| mailbox.place() == place);
         mailbox.unwrap_or_else(|| panic!("{place} does not go to {}", self.role))
     }
 
-    /// Wait for the next message.
-    ///
-    /// # Errors
-    /// [`PeerError`] if the connection ends.
     pub fn receive(&mut self) -> Result<Received, PeerError> {
         loop {
             match self.connection.event()? {
@@ -147,19 +120,12 @@ impl Peer {
         }
     }
 
-    /// Answer all pulses up to the one of a tick.
-    ///
-    /// # Errors
-    /// [`PeerError`] if the connection ends.
+    /// Answer all pulses up to that of a tick.
     pub fn pulse(&mut self, tick: u64) -> Result<(), PeerError> {
         self.connection.session.pulse(tick, Instant::now());
         self.flush()
     }
 
-    /// Send the contents of a mailbox.
-    ///
-    /// # Errors
-    /// [`PeerError`] if the connection ends.
     pub fn send(&mut self, mailbox: &Mailbox) -> Result<(), PeerError> {
         self.connection.session.send(mailbox);
         self.flush()

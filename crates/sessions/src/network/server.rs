@@ -1,4 +1,4 @@
-//! The controller's end of connections. One thread serves each, from the hello to its end.
+//! One thread serves each connection, from the hello to its end.
 
 use std::{
     fmt, io,
@@ -17,17 +17,14 @@ use super::{
     shared::{EndpointHandle, Link, OVER, Outgoing, locked},
 };
 
-/// Reason for refusing a connection when the accept queue has no free slot.
 const CROWDED: &str = "too many connect at once";
 
-/// State that the threads of all connections share.
 pub(super) struct Server {
     handles: Vec<EndpointHandle>,
     operators: Option<Operators>,
     clock: ClockKind,
     queue: AcceptQueue,
-    /// Time of the last report of "too many connect".
-    crowded: Mutex<Option<Instant>>,
+    crowded: Mutex<Option<Instant>>, // time of the last report of "too many connect"
 }
 
 struct Connection {
@@ -62,7 +59,6 @@ impl Server {
         }
     }
 
-    /// Serve a connection from the hello to its end.
     fn serve(&self, stream: UnixStream, ticket: u64) {
         let slot = self.queue.slot(ticket);
         let mut connection = match Line::new(stream) {
@@ -209,7 +205,6 @@ fn said(error: impl fmt::Display) -> String {
     error.to_string()
 }
 
-/// The disconnect reason for an error of the session.
 fn ended(error: SessionError) -> Disconnect {
     match error {
         SessionError::Silent(limit) => Disconnect::Silent(limit),

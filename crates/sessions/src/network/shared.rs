@@ -1,7 +1,5 @@
-//! The mailboxes of one neighbour, which the tick and the threads of the network share, and the network's side of them.
-//!
-//! [`EndpointHandle`] stores mailboxes that arrive, [`Link`] collects those to send. The tick's side is an
-//! [`Endpoint`](super::Endpoint).
+//! The mailboxes of one neighbour, which the tick ([`Endpoint`](super::Endpoint)) and the threads of the network share.
+//! [`EndpointHandle`] stores mailboxes that arrive, [`Link`] collects those to send.
 
 use std::{
     fmt, io,
@@ -18,13 +16,11 @@ use rustix::event::{EventfdFlags, eventfd};
 use super::{ClockKind, Disconnect, NetEvent, Role};
 use neighbours::mailbox::{Mailbox, MailboxError, Place};
 
-/// Disconnect reason when the run has ended.
 pub const OVER: &str = "the run is over";
 
 pub(super) struct Shared {
     pub role: Role,
     pub clock: ClockKind,
-    /// Written by the tick.
     pub outgoing: Vec<Mutex<Mailbox>>,
     pub incoming: Vec<Mutex<Mailbox>>,
     /// Number of the session; 0 while there is none.
@@ -38,8 +34,7 @@ pub(super) struct Shared {
     pub changed: Condvar,
     /// True if the run is over, so that no other session begins.
     pub over: AtomicBool,
-    /// Event descriptor that wakes the thread of the session.
-    wake: OwnedFd,
+    wake: OwnedFd, // event descriptor that wakes the thread of the session
 }
 
 /// Lock a mutex, even after a panic in another thread: the data in the locks of the network are always consistent.
@@ -90,7 +85,6 @@ impl Shared {
     }
 }
 
-/// The network's side of the mailboxes.
 #[derive(Clone)]
 pub struct EndpointHandle {
     pub(super) shared: Arc<Shared>,
@@ -123,13 +117,11 @@ impl EndpointHandle {
         self.shared.clock
     }
 
-    /// True if the neighbour is connected.
     #[must_use]
     pub fn is_connected(&self) -> bool {
         self.shared.session.load(Ordering::Acquire) != 0
     }
 
-    /// True if the neighbour has been connected at some time.
     #[must_use]
     pub fn was_connected(&self) -> bool {
         self.shared.sessions.load(Ordering::Acquire) != 0
@@ -141,9 +133,6 @@ impl EndpointHandle {
     }
 
     /// Begin a session: the mailboxes that the neighbour writes are initialized (IX).
-    ///
-    /// # Errors
-    /// [`AttachError`].
     pub(super) fn attach(&self) -> Result<Link, AttachError> {
         let mut answered = locked(&self.shared.answered);
         if self.shared.is_over() {
@@ -156,8 +145,7 @@ impl EndpointHandle {
             locked(mailbox).initialize();
         }
         *answered = 0;
-        // Read before the session is stored: a tick that sees the session waits for the answer to its own
-        // pulse, which must still be sent.
+        // Before the session is stored: a tick that sees it waits for the answer to its own pulse.
         let pulse = self.shared.pulse.load(Ordering::Acquire);
         let number = self.shared.sessions.fetch_add(1, Ordering::AcqRel).wrapping_add(1).max(1);
         self.shared.session.store(number, Ordering::Release);
@@ -165,7 +153,6 @@ impl EndpointHandle {
         drop(answered);
         self.tell(NetEvent::Connected(self.shared.role));
         let sent = initialized(self.shared.role.from_controller());
-        // Send the present contents of the mailboxes at once.
         self.shared.wake();
         Ok(Link { handle: self.clone(), sent, pulse })
     }
@@ -178,13 +165,8 @@ impl EndpointHandle {
         self.shared.changed.notify_all();
     }
 
-    /// Store a mailbox from the neighbour; `used` is the used part of its bytes.
-    ///
-    /// # Errors
-    /// [`MailboxError`] if the mailbox cannot hold it.
-    ///
-    /// # Panics
-    /// If the neighbour does not write this mailbox: its session refuses such mailgrams.
+    /// Store a mailbox from the neighbour; `used` is the used part of its bytes. Panics if the neighbour does not write
+    /// this mailbox.
     pub(crate) fn deliver(&self, place: Place, used: &[u8]) -> Result<(), MailboxError> {
         let at = self.shared.role.to_controller().iter().position(|own| *own == place);
         locked(&self.shared.incoming[at.expect("a session takes its neighbour's mailboxes only")])
@@ -202,11 +184,9 @@ impl EndpointHandle {
 /// Data that the session sends to the neighbour.
 pub(super) enum Outgoing<'a> {
     Mailbox(&'a Mailbox),
-    /// The pulse of a tick.
     Pulse(u64),
 }
 
-/// State of a session: the mailboxes and the pulse that were sent last.
 pub(super) struct Link {
     pub handle: EndpointHandle,
     sent: Vec<Mailbox>,
@@ -219,7 +199,6 @@ impl Link {
         self.handle.shared.wake.as_fd()
     }
 
-    /// True if the run is over.
     pub fn is_over(&self) -> bool {
         self.handle.shared.is_over()
     }

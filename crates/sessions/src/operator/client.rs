@@ -19,37 +19,29 @@ pub const ALIVE: Duration = Duration::from_millis(100);
 /// Time limit for the answer to a load, which the run gives when all boards have checked the block.
 const LOAD_PATIENCE: Duration = Duration::from_secs(15);
 
-/// Errors of a session with a run.
 #[derive(Debug, thiserror::Error)]
 pub enum ClientError {
-    /// The run does not accept operators.
     #[error(
         "no operator can connect to the run: {0}; it must run on the 40 ms grid, with --operator owner, as the same user"
     )]
     Unreachable(#[source] io::Error),
     #[error("the connection to the run is lost: {0}")]
     Lost(#[from] io::Error),
-    /// The run has ended the session.
     #[error("the run has ended the session")]
     Ended,
-    /// The run has refused or ended the session, with a reason.
     #[error("the run has ended the session: {0}")]
     Refused(String),
-    /// The answer does not follow the protocol: the other side is not a run.
     #[error(transparent)]
     Protocol(#[from] ProtocolError),
-    /// The run has not answered in time.
     #[error(
         "the run has not answered within {} s (a load: {} s): the request is void, unless it is a stop",
         PATIENCE.as_secs(),
         LOAD_PATIENCE.as_secs()
     )]
     Silent,
-    /// The line is empty, too long, or has characters that are not printable.
     #[error("a line of 1 to {TEXT} printable bytes was expected, found {found}")]
     Line {
-        /// Length found, bytes.
-        found: usize,
+        found: usize, // bytes
     },
 }
 
@@ -59,24 +51,16 @@ pub struct Client {
     lines: Lines,
     number: u32,
     run: String,
-    /// Name of the session; empty before the greeting.
-    name: String,
+    name: String, // name of the session; empty before the greeting
     clock: Estimate,
 }
 
 impl Client {
-    /// Begins a session under a name.
-    ///
-    /// # Errors
-    /// [`ClientError`] if the run cannot be reached or refuses the session.
     pub fn connect(path: &Path, name: &Name) -> Result<Self, ClientError> {
         Self::over(UnixStream::connect(path).map_err(ClientError::Unreachable)?, name)
     }
 
     /// Begins a session over a stream that is connected to the run.
-    ///
-    /// # Errors
-    /// [`ClientError`] if the run cannot be reached or refuses the session.
     pub fn over(stream: UnixStream, name: &Name) -> Result<Self, ClientError> {
         stream.set_write_timeout(Some(PATIENCE))?;
         let mut client = Self {
@@ -111,19 +95,13 @@ impl Client {
         &self.name
     }
 
-    /// Sends a request. Returns its number, which the answer repeats. The run executes it within [`PATIENCE`]
-    /// or discards it.
-    ///
-    /// # Errors
-    /// [`ClientError`] if the line is invalid or the connection is lost.
+    /// Sends a request. Returns its number, which the answer repeats. The run executes it within [`PATIENCE`] or
+    /// discards it.
     pub fn send(&mut self, line: &str) -> Result<u32, ClientError> {
         self.send_within(PATIENCE, line)
     }
 
     /// Like [`Client::send`], for a request that is discarded unless the run executes it within the time `left`.
-    ///
-    /// # Errors
-    /// The errors of [`Client::send`].
     pub fn send_within(&mut self, left: Duration, line: &str) -> Result<u32, ClientError> {
         let line = line.trim();
         if line.is_empty() || line.len() > TEXT || line.chars().any(char::is_control) {
@@ -135,19 +113,13 @@ impl Client {
         Ok(self.number)
     }
 
-    /// Sends an empty line, which shows that the operator is still present. A session that commands motion by
-    /// hand must send a line at least every [`SILENCE`](protocol::SILENCE), or the run ends the motion.
-    ///
-    /// # Errors
-    /// [`ClientError`] if the connection is lost.
+    /// Sends an empty line: the operator is present. A session that commands motion by hand must send a line at least
+    /// every [`SILENCE`](protocol::SILENCE).
     pub fn keep_alive(&mut self) -> Result<(), ClientError> {
         self.write("\n")
     }
 
-    /// Stays connected for a time, and sends keep-alive lines meanwhile.
-    ///
-    /// # Errors
-    /// [`ClientError`] if the connection is lost.
+    /// Stays connected for a time, and sends keep-alive lines.
     pub fn stay(&mut self, time: Duration) -> Result<(), ClientError> {
         let end = Instant::now() + time;
         while Instant::now() < end {
@@ -157,10 +129,7 @@ impl Client {
         Ok(())
     }
 
-    /// Returns an answer if one has arrived. Does not wait.
-    ///
-    /// # Errors
-    /// [`ClientError`] if the connection is lost or the run has ended.
+    /// Returns an answer if one has arrived, without waiting.
     pub fn poll(&mut self) -> Result<Option<Answer>, ClientError> {
         self.stream.set_nonblocking(true)?;
         let read = self.read();
@@ -174,18 +143,12 @@ impl Client {
         }
     }
 
-    /// Sends a request and waits for its answer.
-    ///
-    /// # Errors
-    /// [`ClientError`] if no answer arrives. A refusal by the run is not an error; it is the inner result.
+    /// Sends a request and waits for its answer. A refusal by the run is the inner result.
     pub fn ask(&mut self, line: &str) -> Result<Result<String, String>, ClientError> {
         self.ask_within(PATIENCE, line)
     }
 
     /// Like [`Client::ask`], for a request that is discarded unless the run executes it within the time `left`.
-    ///
-    /// # Errors
-    /// The errors of [`Client::ask`].
     pub fn ask_within(&mut self, left: Duration, line: &str) -> Result<Result<String, String>, ClientError> {
         let number = self.send_within(left, line)?;
         let patience = if line.trim_start().starts_with("load ") { LOAD_PATIENCE } else { PATIENCE };
@@ -201,7 +164,6 @@ impl Client {
 
     fn answer(&mut self, line: &str) -> Result<Answer, ClientError> {
         match protocol::answer(line)? {
-            // Requests are numbered from 1.
             Answer { number: 0, verdict: Err(why), .. } => Err(ClientError::Refused(why)),
             answer => {
                 self.clock.hear(answer.time, Instant::now());
@@ -238,7 +200,6 @@ impl Client {
                 Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
                     // Not before the greeting, since the first line is the name.
                     if !self.name.is_empty() {
-                        // The next read reports the end of the session, with its reason.
                         let _ = self.keep_alive();
                     }
                 }

@@ -1,9 +1,8 @@
 //! The clock of a run, by which it judges the time limits of requests.
 //!
-//! Clocks of different machines cannot be compared. Each line of the run therefore carries the time of the run's clock,
-//! and a client specifies the limit of a request in the same clock: the time of the last line, plus the time since it
-//! was read, plus the time for which the client waits. A delay of that line makes the limit too early, never too late.
-//! A request that is delayed in transit, or in a suspended run, has passed its limit when it arrives.
+//! Clocks of different machines cannot be compared. Each line of the run carries the time of the run's clock, and a
+//! client states the limit of a request in it: the time of the last line, plus the time since it was read, plus its
+//! time limit. A delay makes the limit too early, never too late.
 
 use std::time::{Duration, Instant};
 
@@ -14,7 +13,6 @@ use rustix::time::{ClockId, clock_gettime};
 pub struct RunTime(pub u64);
 
 impl RunTime {
-    /// The time after a duration.
     #[must_use]
     pub fn after(self, duration: Duration) -> Self {
         Self(self.0.saturating_add(millis(duration)))
@@ -32,7 +30,6 @@ pub struct RunClock {
 }
 
 impl RunClock {
-    /// Starts the clock at 0.
     #[must_use]
     pub fn start() -> Self {
         Self { start: since_boot() }
@@ -52,8 +49,7 @@ fn since_boot() -> Duration {
 /// Age after which a client replaces its estimate in any case, since the two clocks drift.
 const DRIFT: Duration = Duration::from_secs(60);
 
-/// A client's estimate of the run's clock: a received time, and when it was read. It is never ahead of the
-/// run's clock except for the drift between two estimates.
+/// A received time, and when it was read: ahead of the run's clock at most by the drift.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimate {
     time: RunTime,
@@ -67,7 +63,6 @@ impl Estimate {
         Self { time, read }
     }
 
-    /// The run's time at `now`.
     #[must_use]
     pub fn at(&self, now: Instant) -> RunTime {
         self.time.after(now.saturating_duration_since(self.read))

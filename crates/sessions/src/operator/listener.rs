@@ -36,17 +36,14 @@ const HELLO: Duration = Duration::from_secs(2);
 pub struct Given {
     pub source: Name,
     pub event: Event,
-    /// The request, if the event has one.
-    request: Option<Received>,
+    request: Option<Received>, // the request, if the event has one
 }
 
-/// A received request.
 #[derive(Debug)]
 struct Received {
     number: u32,
     limit: Option<RunTime>,
-    /// Stream of its session, for the answer.
-    stream: Arc<UnixStream>,
+    stream: Arc<UnixStream>, // stream of its session, for the answer
     clock: RunClock,
 }
 
@@ -84,21 +81,16 @@ fn is_open(stream: &UnixStream) -> bool {
     polled.is_err() || !end.revents().intersects(PollFlags::RDHUP | PollFlags::HUP | PollFlags::ERR)
 }
 
-/// Accepts operators of a run until it is dropped.
 pub struct Listener {
     acceptor: Acceptor,
     events: Receiver<Given>,
     sessions: Arc<Sessions>,
 }
 
-/// The streams of the open sessions.
 type Streams = Mutex<Vec<Arc<UnixStream>>>;
 
 impl Listener {
-    /// Listens at a path, with access only for this user, who must be the only owner of its directory.
-    ///
-    /// # Errors
-    /// The error of the operating system if the socket or the thread cannot be created.
+    /// Listens at a path that only this user can access.
     pub fn start(path: &Path, run: &str) -> io::Result<Self> {
         let (sender, events) = sync_channel(QUEUE);
         let sessions = Arc::new(Sessions {
@@ -163,11 +155,8 @@ pub struct Entrance {
 }
 
 impl Entrance {
-    /// Begins a session over a stream from which `unread` was already received. The run sees its name with the
-    /// prefix `netN.`, N counted from 1, which marks sessions from the network.
-    ///
-    /// # Errors
-    /// The error of the operating system, or an error if the run is over.
+    /// Begins a session over a stream from which `unread` was already received. Its name gets the prefix `netN.`, N
+    /// from 1.
     pub fn enter(&self, stream: UnixStream, unread: &[u8]) -> io::Result<()> {
         if self.sessions.stop.load(Ordering::Relaxed) {
             return Err(io::Error::other("the run is over"));
@@ -186,14 +175,11 @@ struct Sessions {
     stop: AtomicBool,
     streams: Streams,
     open: AtomicUsize,
-    /// Number of sessions begun through an entrance.
-    entered: AtomicU32,
+    entered: AtomicU32, // number of sessions begun through an entrance
 }
 
 impl Sessions {
-    /// Accepts a session of this user.
     fn accept(self: &Arc<Self>, stream: UnixStream) {
-        // If the thread cannot start, the session is closed.
         let stream = Arc::new(stream);
         let _ = match check_user(&stream) {
             Ok(()) => self.admit(stream, String::new(), &[]),
@@ -242,7 +228,6 @@ fn refusal(why: &str) -> String {
     format!("{}\n", Answer { number: 0, time: RunTime::default(), verdict: Err(why.to_owned()) })
 }
 
-/// A session in its own thread.
 struct Session {
     stream: Arc<UnixStream>,
     lines: Lines,
@@ -251,9 +236,7 @@ struct Session {
 }
 
 enum End {
-    /// The client or the run has ended the session.
     Closed,
-    /// The client has violated the protocol.
     Wrong(ProtocolError),
 }
 
@@ -276,7 +259,6 @@ impl Session {
             ended
         });
         if let End::Wrong(why) = end_of_session {
-            // The client may already have disconnected.
             let _ = say(&self.stream, &refusal(&why.to_string()));
         }
         end(&self.stream);

@@ -5,11 +5,6 @@
 //!                     ◄──────────── answer, without waiting ────────────┘
 //! ```
 //!
-//! * [`protocol`]: the lines of a session, without I/O;
-//! * [`clock`]: the time limit of a request, by the clock of the run;
-//! * [`Listener`]: the run's side, with one thread per session; its [`Entrance`] admits operators from a network;
-//! * [`Client`]: the side of a console or a script.
-//!
 //! The run defines the meaning of the lines.
 
 mod client;

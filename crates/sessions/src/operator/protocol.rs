@@ -9,31 +9,24 @@
 //! | from the run | `NUMBER @TIME ok TEXT` | the request was executed in the tick that TEXT begins with |
 //! | from the run | `NUMBER @TIME refused TEXT` | the request was refused; TEXT is the reason |
 //!
-//! TIME is the run's clock in milliseconds when it sends the line. LIMIT is the time of the same clock after which the
-//! sender no longer waits: the run then discards the request unless it is a stop. A request may lack `@LIMIT` only if
-//! it is a stop or changes nothing.
+//! TIME is the run's clock, ms. LIMIT is the time after which the sender no longer waits: the run then discards the
+//! request unless it is a stop. Only a stop, and a request that changes nothing, may lack `@LIMIT`.
 //!
-//! A line ends with a line feed and has at most [`LINE`] bytes of printable UTF-8 before it. A line that breaks these
-//! rules ends the session.
+//! A line ends with a line feed and has at most [`LINE`] bytes of printable UTF-8; any other line ends the session.
 
 use std::{fmt, str::FromStr, time::Duration};
 
 use crate::operator::clock::RunTime;
 
-/// Greatest length of a line without its line feed, bytes.
-pub const LINE: usize = 260;
-/// Greatest length of a request without number and limit, bytes.
-pub const TEXT: usize = 224;
-/// First word of the run's first line, and the version of the protocol.
-pub const GREETING: &str = "rcs-operator 2";
+pub const LINE: usize = 260; // greatest length of a line without its line feed, bytes
+pub const TEXT: usize = 224; // greatest length of a request without number and limit, bytes
+pub const GREETING: &str = "rcs-operator 2"; // and the version of the protocol
 /// Longest silence of a session that commands motion by hand. After it, the motion ends.
 pub const SILENCE: Duration = Duration::from_millis(250);
 /// Time for which a client waits for an answer. The run answers between two ticks, and a second has 25.
 pub const PATIENCE: Duration = Duration::from_secs(1);
-/// Greatest time from now to the limit of a request.
-pub const LONGEST: Duration = Duration::from_secs(10);
-/// Greatest length of a name, bytes.
-const NAME: usize = 24;
+pub const LONGEST: Duration = Duration::from_secs(10); // from now to the limit of a request
+const NAME: usize = 24; // greatest length of a name, bytes
 
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Name(String);
@@ -73,7 +66,6 @@ impl fmt::Display for Name {
     }
 }
 
-/// Error of a name that is not allowed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the name of an operator has 1 to {NAME} letters, digits, -, _ and .; found {0:?}")]
 pub struct NameError(String);
@@ -95,7 +87,6 @@ impl FromStr for Name {
 /// Why a request is too late for its sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Late {
-    /// Its time limit is over, so its sender no longer waits.
     GivenUp,
     Ended,
     /// It has no usable time limit, so it is unknown whether its sender still waits.
@@ -136,7 +127,6 @@ impl fmt::Display for Late {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
     Connected,
-    /// The session has sent a line.
     Line(String),
     /// The session has sent a line whose sender no longer waits.
     Late(Late, String),
@@ -188,7 +178,6 @@ impl From<&str> for Event {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
     pub number: u32,
-    /// The run's clock at the time of the answer.
     pub time: RunTime,
     /// Tick and text if the request was executed, otherwise the reason of the refusal.
     pub verdict: Result<String, String>,
@@ -216,36 +205,26 @@ const CUT: &str = "...";
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProtocolError {
-    /// The first line is not `hello NAME`.
     #[error("hello NAME was expected as the first line; found {0:?}")]
     NoHello(String),
-    /// The name of the session is not allowed.
     #[error(transparent)]
     Name(#[from] NameError),
-    /// A request lacks its number or text, or its limit is not a number.
     #[error("a number and a line were expected, as in `7 stop` or `8 @15230 PAUSE`; found {0:?}")]
     NoRequest(String),
-    /// A line is too long or does not end.
     #[error("a line of at most {LINE} bytes was expected")]
     TooLong,
-    /// A line is not printable UTF-8.
     #[error("printable UTF-8 was expected")]
     NoText,
-    /// An answer does not have the form of a run's answer.
     #[error("an answer of a run was expected; found {0:?}")]
     NoAnswer(String),
 }
 
-/// Parses the first line of a session, and returns its name.
-///
-/// # Errors
-/// [`ProtocolError`] if the line is not `hello NAME`, or the name is not allowed.
+/// Parses the first line of a session, `hello NAME`.
 pub fn hello(line: &str) -> Result<Name, ProtocolError> {
     let name = line.strip_prefix("hello ").ok_or_else(|| ProtocolError::NoHello(line.to_owned()))?;
     Ok(name.parse()?)
 }
 
-/// A request as it was received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Request<'a> {
     pub number: u32,
@@ -255,8 +234,7 @@ pub struct Request<'a> {
 }
 
 impl Request<'_> {
-    /// Why the request is too late at a time of the run's clock; `None` if its sender waits. `is_open` is false
-    /// if its session has ended.
+    /// Why the request is too late; `None` if its sender waits. `is_open` is false if its session has ended.
     #[must_use]
     pub fn late(&self, now: RunTime, is_open: bool) -> Option<Late> {
         match self.limit {
@@ -270,9 +248,6 @@ impl Request<'_> {
 }
 
 /// Parses a request. Returns `None` for an empty line.
-///
-/// # Errors
-/// [`ProtocolError::NoRequest`] if number or text is missing, or the limit is not a number.
 pub fn request(line: &str) -> Result<Option<Request<'_>>, ProtocolError> {
     if line.is_empty() {
         return Ok(None);
@@ -297,8 +272,7 @@ pub fn request(line: &str) -> Result<Option<Request<'_>>, ProtocolError> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Greeting {
     pub run: String,
-    /// Name of the session, which is unique in the run.
-    pub name: Name,
+    pub name: Name, // unique in the run
     pub time: RunTime,
 }
 
@@ -317,10 +291,6 @@ pub fn greeting(line: &str) -> Option<Greeting> {
     Some(Greeting { run: run.to_owned(), name: name.parse().ok()?, time })
 }
 
-/// Parses an answer.
-///
-/// # Errors
-/// [`ProtocolError::NoAnswer`] if the line is not an answer.
 pub fn answer(line: &str) -> Result<Answer, ProtocolError> {
     let unknown = || ProtocolError::NoAnswer(line.to_owned());
     let mut words = line.splitn(4, ' ');
@@ -336,22 +306,17 @@ pub fn answer(line: &str) -> Result<Answer, ProtocolError> {
     Ok(Answer { number, time: RunTime(time), verdict })
 }
 
-/// Splits a stream of bytes into lines.
 #[derive(Debug, Default)]
 pub struct Lines {
     bytes: Vec<u8>,
 }
 
 impl Lines {
-    /// Adds bytes of the stream.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// Returns the next complete line without its line feed, if any.
-    ///
-    /// # Errors
-    /// [`ProtocolError::TooLong`] or [`ProtocolError::NoText`]. The rest of the stream is then unreadable.
+    /// Without its line feed. After an error, the rest of the stream is unreadable.
     pub fn next_line(&mut self) -> Result<Option<String>, ProtocolError> {
         let end = self.bytes.iter().position(|byte| *byte == b'\n');
         if end.unwrap_or(self.bytes.len()) > LINE {
@@ -391,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn a_session_line_by_line() {
+    fn session_lines_parse_in_order() {
         assert_eq!(hello("hello console-1").map(|name| name.to_string()), Ok("console-1".into()));
         assert_eq!(hello("7 stop"), Err(ProtocolError::NoHello("7 stop".into())));
         for wrong in ["hello ", "hello a b", "hello é", "hello 1234567890123456789012345"] {

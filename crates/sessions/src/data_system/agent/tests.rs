@@ -1,7 +1,5 @@
-//! An agent and a simulated Data System, without a network between them.
-//!
-//! In fast clock an exchange ends when the server has answered its pulse and all its earlier data have arrived.
-//! With a time limit of zero an agent checks once, so that the results do not depend on the computer's clock.
+//! An agent and a simulated Data System, without a network. With a time limit of zero an agent checks once, so that the
+//! results do not depend on the computer's clock.
 
 use std::{
     path::Path,
@@ -28,13 +26,10 @@ use crate::{
 };
 use neighbours::mailbox::Mailbox;
 
-/// The mailgrams that a server writes, in order.
 type Written = Vec<Vec<u8>>;
-/// Change made to a status before it is sent.
 type Garble = fn(&mut Vec<u8>);
 
-/// A server on a thread, until the run is over or the connection ends. `answer` receives the number of the
-/// mailgram read, from 1, and its command.
+/// A server on a thread. `answer` receives the number of the mailgram, from 1, and its command.
 fn serve(
     handle: &EndpointHandle,
     mut answer: impl FnMut(usize, &[u8]) -> Written + Send + 'static,

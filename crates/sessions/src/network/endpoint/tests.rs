@@ -1,4 +1,4 @@
-//! An endpoint and its session without a network: the test reads and writes the mailboxes of the other side.
+//! The test reads and writes the mailboxes of the other side.
 
 use std::thread;
 
@@ -11,7 +11,6 @@ use crate::network::{
 };
 use neighbours::mailbox::{HWSC_COMMAND, HWSC_STATUS};
 
-/// A message that was sent to a neighbour.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Sent {
     Mailbox(Box<Mailbox>),
@@ -19,7 +18,6 @@ pub(crate) enum Sent {
     Over,
 }
 
-/// A session whose other side is a test.
 pub(crate) struct TestSession {
     link: Link,
     unread: std::collections::VecDeque<Sent>,
@@ -43,7 +41,6 @@ impl TestSession {
         self.link.handle.deliver(mailbox.place(), mailbox.used()).unwrap();
     }
 
-    /// The neighbour answers the pulse of a tick.
     pub fn answer(&self, tick: u64) {
         self.link.handle.answer(tick);
     }
@@ -52,7 +49,6 @@ impl TestSession {
         self.link.handle.detach(why);
     }
 
-    /// The next message that is sent.
     pub fn next(&mut self) -> Sent {
         loop {
             if let Some(sent) = self.unread.pop_front() {
@@ -229,7 +225,6 @@ fn stopped_endpoint_has_no_neighbour_and_does_not_wait() {
         let (mut endpoint, mut session) = connected(Role::DataSystem, clock);
         let stop = endpoint.stop_handle();
         let neighbour = thread::spawn(move || {
-            // Never answers.
             session.pulse();
             stop.stop();
             while session.next() != Sent::Over {}
