@@ -1,5 +1,5 @@
-//! Plays a job and forks it in the middle; in the copy the cable to the robot is cut. Run
-//! `cargo run --release -p closed-loop --example fork` in the root of the repository.
+//! Plays a job and forks it in the middle; in the copy the cable to the robot is cut: `cargo run --release -p
+//! closed-loop --example fork`.
 
 #![expect(clippy::print_stdout, reason = "an example prints its results")]
 

@@ -1,12 +1,10 @@
 //! Checks the contacts of the robot. The cell reports contacts; common memory contains the present command. A list in
 //! the cell description gives the contacts permitted during each command.
 //!
-//! A forbidden contact does not end the run at once: no sensor of the cell detects it, and the log must show the
-//! further actions of the controller. The job has failed, however. The run ends when the arm is deeper than
-//! [`DEEPEST`] in an obstacle: a real arm would have stalled before, so the simulation is meaningless from there on.
+//! A forbidden contact is a failure of the job, but does not end the run: no sensor detects it, and the log must show
+//! what follows. The run ends when the arm is deeper than [`DEEPEST`]: a real arm would have stalled.
 //!
-//! A permitted contact remains permitted until it gets deeper: the next command begins where the last one ended, and
-//! moves away.
+//! A permitted contact remains permitted until it gets deeper: the next command begins where the last one ended.
 
 use std::{collections::BTreeMap, fmt};
 
@@ -18,14 +16,10 @@ use plant::{clearance::Contact, description::Permits};
 use rcs_core::tick::Tick;
 use serde::Serialize;
 
-/// Depth of arm, gripper or fingers in an obstacle that ends the run, in.
-pub const DEEPEST: f64 = 1.0;
-/// Greater distances are not near misses in an ordinary run, in.
-const MARGIN: f64 = 2.0;
-/// A permitted contact ends at this distance, in.
-const FREE: f64 = 0.05;
-/// Smallest increase of depth that is treated as deeper, in.
-const DEEPER: f64 = 0.001;
+pub const DEEPEST: f64 = 1.0; // depth of arm, gripper or fingers in an obstacle that ends the run, in
+const MARGIN: f64 = 2.0; // greater distances are not near misses in an ordinary run, in
+const FREE: f64 = 0.05; // a permitted contact ends at this distance, in
+const DEEPER: f64 = 0.001; // smallest increase of depth that is treated as deeper, in
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Commands {
@@ -44,8 +38,7 @@ impl From<&CommonMemory> for Commands {
 }
 
 impl Commands {
-    /// The commands after another tick. A command that E-move has not accepted yet, or that has failed, moves
-    /// nothing: then the previous command applies.
+    /// After another tick. A command that E-move has not accepted yet, or that has failed, moves nothing.
     fn after(self, memory: &CommonMemory) -> Self {
         let (told, status) = (&memory.subtask.emove, &memory.emove.status);
         let taken = status.echo == told.number && status.report != StatusReport::Error;
@@ -69,14 +62,11 @@ pub struct Collision {
     pub mover: String,
     pub obstacle: String,
     pub depth_in: f64,
-    /// Position of the greatest depth, world coordinates, in.
-    pub position_in: [f64; 3],
+    pub position_in: [f64; 3], // position of the greatest depth, world coordinates, in
     pub tick: u64,
     pub ticks: u64,
-    /// Commands at the beginning of the contact.
     #[serde(rename = "command")]
     pub commands: Commands,
-    /// False for a carried part.
     #[serde(skip)]
     is_robot: bool,
 }
@@ -102,7 +92,6 @@ impl fmt::Display for Collision {
 
 #[derive(Clone, Debug)]
 pub enum ContactEvent {
-    /// A forbidden contact begins.
     Begins(Collision),
     Ends(Collision),
 }
@@ -129,7 +118,6 @@ pub struct NearMiss {
     pub obstacle: String,
     pub distance_in: f64,
     pub position_in: [f64; 3],
-    /// Tick of the smallest distance.
     pub tick: u64,
     #[serde(rename = "command")]
     pub commands: Commands,
@@ -142,27 +130,21 @@ impl fmt::Display for NearMiss {
     }
 }
 
-/// State of a permitted contact of two objects.
 #[derive(Clone, Copy, Debug)]
 struct Allowance {
-    /// Greatest depth while the contact was permitted, in.
-    depth: f64,
-    /// True if the objects have separated since then.
-    free: bool,
+    depth: f64, // greatest depth while the contact was permitted, in
+    free: bool, // true if the objects have separated since then
 }
 
 #[derive(Clone, Debug)]
 pub struct ContactCheck {
     permits: Permits,
     allowed: BTreeMap<(String, String), Allowance>,
-    /// Collisions in progress: index in `collisions`.
-    open: BTreeMap<(String, String), usize>,
+    open: BTreeMap<(String, String), usize>, // collisions in progress: index in `collisions`
     collisions: Vec<Collision>,
     nearest: Option<NearMiss>,
-    /// Greater distances are not near misses, in.
-    farthest: f64,
-    /// The commands that move the robot or moved it last.
-    commands: Commands,
+    farthest: f64,      // greater distances are not near misses, in
+    commands: Commands, // the commands that move the robot or moved it last
 }
 
 impl ContactCheck {
@@ -194,8 +176,8 @@ impl ContactCheck {
         (&self.allowed, &self.open, &self.commands)
     }
 
-    /// Distance within which the cell must report pairs, in: that of the nearest miss so far, and enough to detect
-    /// the end of a contact.
+    /// Distance within which the cell must report pairs, in: that of the nearest miss, and enough for the end of a
+    /// contact.
     #[must_use]
     pub fn margin(&self) -> f64 {
         self.least().max(FREE)
@@ -231,7 +213,6 @@ impl ContactCheck {
         events
     }
 
-    /// True if a collision of the two objects is in progress.
     #[must_use]
     pub fn is_collision(&self, contact: &Contact) -> bool {
         self.open.contains_key(&contact.pair())
@@ -255,8 +236,7 @@ impl ContactCheck {
             .any(|at| self.collisions.get(*at).is_some_and(|one| one.is_robot && one.depth_in > DEEPEST))
     }
 
-    /// The failure of a finished job: the first collision, as later ones may follow from it; `None` without a
-    /// collision.
+    /// The failure of a finished job: the first collision, as later ones may follow from it.
     #[must_use]
     pub fn verdict(&self) -> Option<Failure> {
         let (first, rest) = self.collisions.split_first()?;

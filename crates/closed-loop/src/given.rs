@@ -14,12 +14,10 @@ pub struct Given {
     pub patience: Option<u16>,
     /// Expected lag of the robot behind the sent positions, ms; `None` for that of the T3.
     pub lag: Option<u16>,
-    /// The operators' joystick box, which is combined with that of the cell.
-    pub joystick: JoystickBox,
+    pub joystick: JoystickBox, // combined with that of the cell
     pub terminals: OperatorInputs,
     /// Status of an external Data System; ignored if the loop has its own.
     pub data_base: DataBaseStatus,
-    /// Statuses of a pedestal in another process.
     pub pedestal: OutsidePedestal,
 }
 
@@ -47,8 +45,8 @@ pub struct RobotInputs {
     pub resolvers: Option<Resolvers>,
 }
 
-/// Two joystick boxes combined: the lower velocity applies, a moved stick and an enabled frame of `own` take
-/// precedence, and switches and buttons are combined by OR.
+/// The lower velocity applies, a moved stick and an enabled frame of `own` take precedence, switches and buttons are
+/// combined by OR.
 pub(crate) fn combined(own: &JoystickBox, other: JoystickBox) -> JoystickBox {
     let stick = if (own.x, own.y) == (0, 0) { (other.x, other.y) } else { (own.x, own.y) };
     JoystickBox {

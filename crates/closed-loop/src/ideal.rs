@@ -7,7 +7,6 @@ use taskdata::load::job::Workstation as Action;
 
 use crate::{Turn, World, workstation::orders};
 
-/// The ideal cell with the other equipment of the workstation, without judges.
 #[derive(Clone, Debug)]
 pub struct IdealWorkstation {
     pub cell: Ideal,

@@ -12,8 +12,7 @@ const LATE: u16 = 5;
 pub struct RobotLine {
     plan: Option<Injector>,
     armed: Option<FaultKind>,
-    /// Applies the fault to the last affected answer.
-    answer: Option<Injector>,
+    answer: Option<Injector>, // applies the fault to the last affected answer
 }
 
 impl RobotLine {
@@ -39,7 +38,6 @@ impl RobotLine {
     pub fn cut(&mut self, now: Tick) {
         let mut plan = Plan::new(0);
         for kind in [FaultKind::Drop, FaultKind::CtsLow] {
-            // Two rules of different kinds never conflict.
             let _ = plan.add(Rule::new(kind).window(now.0.saturating_add(1), u64::MAX));
         }
         self.replace_plan(&plan);

@@ -4,8 +4,7 @@
 //!   Gate: status mailbox ──► Commander::step ──► command ──► CommandBox ──► Gate::read ──► Task
 //! ```
 //!
-//! Every commander in this process uses a [`CommandBox`]: the job of a run and an operator ([`JobPlayer`]), and the
-//! operator of a campaign.
+//! The job of a run and an operator ([`JobPlayer`]), and the operator of a campaign use a [`CommandBox`].
 
 use std::convert::Infallible;
 
@@ -24,7 +23,6 @@ use taskdata::files::TaskData;
 
 use crate::{ClosedLoop, Given, World, workstation::SimulatedWorkstation};
 
-/// Commands Task and operates the workstation around the robot.
 pub trait Commander<W = SimulatedWorkstation> {
     /// Called once per tick: read Task's status and return the command for the mailbox, if any.
     fn step(&mut self, tick: Tick, status: &Status<'_>, workstation: &mut W) -> Option<HwsCommand>;
@@ -52,11 +50,8 @@ impl CommandBox {
         &self.0
     }
 
-    /// Call once per tick: the commander reads the status mailbox, and its command, if any, is written into the
-    /// command mailbox. The gate must then read the mailbox.
-    ///
-    /// # Errors
-    /// [`JobFailure::Refused`] if the status cannot be decoded or the command does not fit into the mailbox.
+    /// Once per tick: the commander reads the status mailbox and writes its command; the gate must then read the
+    /// mailbox. Fails if the status cannot be decoded or the command does not fit.
     pub fn write<W>(
         &mut self,
         tick: Tick,
@@ -83,11 +78,8 @@ impl<L, W: World> ClosedLoop<L, W>
 where
     L: for<'a> Levels<TaskData<'a>, Error = Infallible>,
 {
-    /// Run one tick without external inputs. The commands are not checked against the task data: they belong to a job
-    /// that was checked when it was loaded.
-    ///
-    /// # Errors
-    /// Those of [`CommandBox::write`]; the tick is valid.
+    /// Run one tick without external inputs, with commands of a job that was checked when it was loaded. After an error
+    /// the tick is valid.
     pub fn step(
         &mut self,
         command_box: &mut CommandBox,
@@ -123,15 +115,13 @@ impl JobPlayer {
         self.command_box.mailbox()
     }
 
-    /// Call once per tick: the emulator reads its status mailbox and writes its command mailbox. The gate must then
-    /// read it; the status shows the emulator which commands the gate refuses.
+    /// Once per tick: the emulator reads its status mailbox and writes its command mailbox. The gate must then read it.
     pub fn write<W: World>(&mut self, tick: Tick, gate: &Gate, workstation: &mut W) -> Progress {
         let written = self.command_box.write(tick, gate, workstation, &mut self.hwsc);
         self.progress(written)
     }
 
-    /// Return control to the job and write its next command. The mailboxes are initialized, as at every connection of
-    /// a neighbour (IX.1). The gate must then read the command mailbox.
+    /// Return control to the job and write its next command. The mailboxes are initialized (IX.1).
     pub fn take_back(&mut self, tick: Tick, gate: &mut Gate, commands: Vec<BegunStep>) -> Progress {
         self.command_box.0.initialize();
         gate.initialize();

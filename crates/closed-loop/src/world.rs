@@ -8,7 +8,6 @@ use taskdata::files::TaskData;
 
 /// A cell with the other equipment of its workstation, and its judges.
 pub trait World: Workstation {
-    /// The line to the robot, and the judges.
     type Checks: Clone;
     type Settled;
 

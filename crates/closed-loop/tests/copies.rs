@@ -10,7 +10,6 @@ use plant::{Cell, CellDescription};
 use rcs_core::tick::Tick;
 use taskdata::load::{Job, Store};
 
-/// A closed loop, and the player of its job.
 #[derive(Clone)]
 struct Run {
     closed: ClosedLoop,

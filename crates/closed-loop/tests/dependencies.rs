@@ -1,5 +1,4 @@
-//! A closed loop does no I/O: it depends on no package that opens sockets, ports, databases or shared memory, or that
-//! runs a clock.
+//! A closed loop depends on no package that does I/O or runs a clock.
 
 use std::{collections::BTreeSet, env, process::Command};
 

@@ -15,15 +15,12 @@ use plant::{Cell, CellDescription, Ideal, room::Room, t3::T3Controller};
 use rcs_core::tick::Tick;
 use taskdata::load::{Job, Store};
 
-/// Longest job, ticks.
-const LONGEST: Tick = Tick(60_000);
+const LONGEST: Tick = Tick(60_000); // ticks
 /// Greatest difference of a joint at the end of a point, rad. Paths and pictures agree to 1e-8.
 const EXACT: f64 = 1e-6;
-/// The same for a job with guarded moves: they stop where the force sensor detects the drum, and the ideal cell has
-/// no friction there.
+/// For a job with guarded moves, because the ideal cell has no friction at the drum.
 const GUARDED: f64 = 1e-3;
 
-/// The end of an order of E-move to Prim.
 #[derive(Debug)]
 struct Point {
     emove: EmoveVerb,
@@ -42,7 +39,6 @@ fn data() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))
 }
 
-/// Play a job in a world, and note the reached points.
 fn play<W: World>(store: &Store, job: &Job, world: W, t3: impl Fn(&W) -> &T3Controller) -> Played {
     let (store, reloads) = (Arc::new(store.clone()), Arc::new(job.reloads.clone()));
     let mut closed = ClosedLoop::in_world(Present::default(), store, reloads, world);

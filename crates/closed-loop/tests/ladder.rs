@@ -1,5 +1,4 @@
-//! The ladder in the ideal cell: MOV-TO-LOC from the workstation's command to the joints and back, in any order of
-//! the processes, with late and restarted processes.
+//! The ladder in the ideal cell, in any order of the processes, with late and restarted processes.
 
 mod rig;
 
@@ -129,7 +128,6 @@ proptest! {
     }
 }
 
-/// Copy the outputs of a process into another common memory.
 fn take_outputs(process: ProcessId, from: &CommonMemory, into: &mut CommonMemory) {
     match process {
         ProcessId::Task => into.task = from.task,
@@ -155,8 +153,7 @@ fn partition() -> impl Strategy<Value = (Vec<usize>, Vec<ProcessId>)> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
-    /// docs/design/tick.md "Order": nor does their distribution over boards, each with a ladder that steps some of
-    /// the processes and receives the outputs of the others; with suspended processes and single steps.
+    /// docs/design/tick.md "Order": nor does their distribution over boards, with suspended processes and single steps.
     #[test]
     fn distribution_does_not_matter(
         (board_of, order) in partition(),
@@ -189,7 +186,6 @@ proptest! {
     }
 }
 
-/// A fault in a tick.
 #[derive(Clone, Debug)]
 enum Mishap {
     /// A process is not stepped for some ticks.
@@ -207,8 +203,8 @@ fn mishap() -> impl Strategy<Value = Mishap> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
-    /// With any late or restarted processes: the robot is never commanded to jump, a command reported as finished is
-    /// finished, every command ends, and a PAUSE leads back to work.
+    /// With any late or restarted processes: the robot never jumps, a finished command is finished, every command ends,
+    /// and a PAUSE leads back to work.
     #[test]
     fn mishaps_end_in_a_stop_and_a_report(
         mishaps in prop::collection::vec((0_u16..500, mishap()), 1..5),
@@ -381,7 +377,6 @@ fn a_process_of_a_stopped_board_is_executed_once() {
     }
 }
 
-/// A ladder in which every writable variable has a value.
 fn believing() -> Rig {
     let mut rig = Rig::new();
     rig.command("PAUSE", "");
@@ -458,7 +453,6 @@ fn a_running_process_refuses_a_written_value() {
     }
 }
 
-/// The buffers that differ, by process.
 fn changes(one: &CommonMemory, other: &CommonMemory) -> Vec<&'static str> {
     let images = [one, other].map(|memory| {
         let mut image = vec![0; CommonMemory::SIZE];
@@ -551,7 +545,6 @@ fn only_the_process_of_the_attached_gripper_is_stepped() {
     assert!(rig.before.grip.status.initialized, "the calibration outlasts the sleep");
 }
 
-/// The state of joystick box and quick change for some ticks.
 #[derive(Clone, Copy, Debug)]
 struct Interval {
     hold: u8,
@@ -567,8 +560,7 @@ fn interval() -> impl Strategy<Value = Interval> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
-    /// Dormancy, holding and single step are decided before any process is stepped: the order changes no bit, the
-    /// robot is never commanded to jump, and once everything runs again a PAUSE leads back to work.
+    /// Dormancy, holding and single step are decided before any process is stepped: the order changes no bit.
     #[test]
     fn suspensions_do_not_depend_on_the_order(
         intervals in prop::collection::vec(interval(), 1..12),
@@ -641,8 +633,7 @@ fn a_lost_process_below_is_an_error() {
     assert_eq!(rig.finish(&without_emove, 100), (HwsReport::Error, Reason::NeighbourLost));
 }
 
-/// Its processes run in another ladder in lock step: the outputs are bit-identical to those with an internal
-/// pedestal.
+/// Its processes run in another ladder in lock step: the outputs are bit-identical.
 #[test]
 fn external_pedestal_is_adopted_and_lost_without_answers() {
     let pedestal = [ProcessId::Pedestal, ProcessId::Hand, ProcessId::RotaryTable];

@@ -1,5 +1,3 @@
-//! Claims about the cell, of which the goals of commands consist, and their check.
-
 use geometry::frame::Frame;
 use interfaces::{Unconfirmed, pose_range};
 use rcs_core::name::Name16;
@@ -27,24 +25,20 @@ pub enum Claim {
     AtPart {
         object: String,
         near: Frame,
-        /// From the part to the goal.
-        movetable: Movement,
+        movetable: Movement, // from the part to the goal
     },
     /// The robot has passed a frame, or is at most this far from it, in.
     Near {
         goal: Frame,
-        /// Distance at which the next motion may begin, in.
-        inches: f64,
+        inches: f64, // distance at which the next motion may begin, in
     },
     /// The fingers are at least this far open, in.
     Open(f64),
     /// The robot holds a part as a grip requires.
     Holds {
         object: Name16,
-        /// Frame of the part in the tool frame, if task data and cell give it.
-        place: Vec<Frame>,
-        /// True if no picture of the part is taken at its source.
-        unseen: bool,
+        place: Vec<Frame>, // frame of the part in the tool frame, if task data and cell give it
+        unseen: bool,      // true if no picture of the part is taken at its source
     },
     /// The robot alone holds it: the pedestal has released it.
     HoldsAlone,
@@ -54,11 +48,9 @@ pub enum Claim {
         object: Name16,
         goal: Frame,
     },
-    /// A part lies at a location of the cell.
     LiesAt {
         object: Name16,
-        /// Location and sector, 0 for none.
-        place: (String, u16),
+        place: (String, u16), // location and sector, 0 for none
     },
     /// A part is at the place that E-move reports.
     Located {
@@ -71,14 +63,11 @@ pub enum Claim {
     WearsNone(Option<u8>),
     InDrum(Name16),
     OutOfDrum(Name16),
-    /// The robot or its part is in contact.
     Touches,
-    /// The commanded point is at rest, and the arm is behind it at most by the lag of its servos.
+    /// The commanded point is at rest, and the arm lags at most by the lag of its servos.
     RobotStops,
     FingersStill,
-    /// Hand and table of the pedestal are at rest.
     PedestalStill,
-    /// The robot controller executes the DEPC function.
     Linked,
 }
 
@@ -117,9 +106,8 @@ fn in_grip(object: &Name16, grip: i32, scene: &Scene<'_>) -> Vec<Frame> {
 }
 
 impl Claim {
-    /// True if a status with this unconfirmed part of the goal leaves the claim open. `holds` is true if the robot
-    /// holds something: jaws without a force sensor do not show whether they press, but the place of the part between
-    /// them is still claimed.
+    /// True if this unconfirmed part of the goal leaves the claim open. Jaws without a force sensor do not show whether
+    /// they press, but the place of the part that they hold is still claimed.
     pub const fn is_covered(&self, by: Unconfirmed, holds: bool) -> bool {
         match by {
             Unconfirmed::None => false,
@@ -139,20 +127,15 @@ impl Claim {
         }
     }
 
-    /// True if the claim is about a part's place in the fingers.
     pub fn is_of_grasp(&self) -> bool {
         matches!(self, Self::Holds { place, .. } if !place.is_empty())
     }
 
-    /// True if the claim is about the place of a held or released part.
     pub const fn is_of_part(&self) -> bool {
         matches!(self, Self::Holds { .. } | Self::Placed { .. } | Self::LiesAt { .. } | Self::InDrum(_))
     }
 
-    /// Compare the claim with the cell.
-    ///
-    /// # Errors
-    /// The actual state.
+    /// Compare the claim with the cell. Errors: the actual state.
     pub fn check(&self, scene: &Scene<'_>, history: &History) -> Result<(), Untruth> {
         let cell = scene.cell;
         match self {

@@ -1,5 +1,3 @@
-//! The judge's record of earlier ticks: changes of parts by the operator, and releases by the robot.
-
 use std::collections::BTreeMap;
 
 use geometry::frame::{Frame, Vector};
@@ -14,32 +12,25 @@ pub struct Released {
     pub id: u32,
     /// Tick in which the fingers opened.
     pub tick: Tick,
-    /// Tool frame in the last tick of the hold, world, in.
-    pub tool: Frame,
-    /// Frame of the part in that tick, world, in.
-    pub part: Frame,
+    pub tool: Frame, // tool frame in the last tick of the hold, world, in
+    pub part: Frame, // world, in
 }
 
 #[derive(Clone, Debug, Default)]
 pub struct History {
-    /// Last tick in which an operator changed a part, by its number.
-    changed: BTreeMap<u32, Tick>,
-    /// Tick in which the workstation delivered a part, by its number.
-    delivered: BTreeMap<u32, Tick>,
+    changed: BTreeMap<u32, Tick>, // last tick in which an operator changed a part, by its number
+    delivered: BTreeMap<u32, Tick>, // tick in which the workstation delivered a part, by its number
     /// The part held after the last tick, with tool frame and part frame.
     held: Option<(u32, Frame, Frame)>,
     pub(super) released: Option<Released>,
-    /// Tick of the grasp of the held part.
-    taken: Tick,
+    taken: Tick, // tick of the grasp of the held part
     /// Tick of the camera's last look, and the name of the part.
     pub(super) looked: Option<(Tick, String)>,
-    /// Number of that picture.
-    look: u32,
+    look: u32, // number of that picture
     /// Parts off their places for a reason that no sensor shows, by number.
     displaced: BTreeMap<u32, NotSensed>,
     /// Last tick in which the arm had pressure and the robot controller executed the DEPC function.
     pub(super) up: Tick,
-    /// True if that tick is the last one.
     pub(super) is_up: bool,
 }
 
@@ -107,8 +98,7 @@ impl History {
         self.changed.keys().filter(|other| **other != id).any(meets).then_some(NotSensed::Occupied)
     }
 
-    /// True if the arm lost its pressure, or the robot controller failed, too recently for the process to have read
-    /// it.
+    /// True if the arm or the robot controller failed too recently for the process to have read it.
     pub const fn has_just_failed(&self, tick: Tick, level: Level) -> bool {
         !self.is_up && tick.since(self.up) <= level.hops()
     }

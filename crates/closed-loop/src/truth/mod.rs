@@ -1,18 +1,16 @@
 //! The judge of confirmations: checks that a command reported as finished has its effect in the simulated cell.
 //!
 //! Task, Subtask, E-move and Prim report each command as finished. The command and the task data alone determine the
-//! required state: the [`Claim`]s of the command ([`task`], [`subtask`], [`emove`], [`prim`]). The judge collects
-//! them when the command appears. It compares them with the bodies of the cell in the tick in which the status
-//! becomes *finished*, without regard to sensors, statuses or estimates of the controller.
+//! required state: its [`Claim`]s, which the judge collects when the command appears. It compares them with the bodies
+//! of the cell when the status becomes *finished*, without regard to sensors, statuses or estimates.
 //!
 //! ```text
 //!   command of a level ──► its claims                          when its number appears
 //!   status becomes finished ──► claims ──compare──► the cell   true, false, or not sensed
 //! ```
 //!
-//! An untrue claim is *not sensed* only for the reasons of [`NotSensed`], a closed list. Every other untrue claim is
-//! *false*, and the run has failed. The judge never rejects an error: `rcs-run campaign --truth` continues after it
-//! to show that its remedy leads to a finished job.
+//! An untrue claim is *not sensed* only for the reasons of [`NotSensed`]. Every other one is *false*, and the run has
+//! failed. The judge never rejects an error: `rcs-run campaign --truth` shows that its remedy leads to a finished job.
 
 mod claim;
 mod emove;
@@ -41,7 +39,6 @@ use taskdata::files::TaskData;
 use self::history::History;
 pub use self::{claim::Claim, untruth::Untruth};
 
-/// A process whose confirmations are judged.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Level {
     Task,
@@ -76,23 +73,21 @@ impl fmt::Display for Level {
     }
 }
 
-/// Reason why no sensor of the robot can contradict an untrue confirmation. The list is closed: a new entry must say
-/// why the machine of the manual has no sensor for it.
+/// Why no sensor can contradict an untrue confirmation. The list is closed: a new entry must say why the machine of the
+/// manual has no sensor for it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NotSensed {
-    /// Another part of the same width is between the fingers, and no picture of it is taken, or it looks the same.
-    /// The fingers measure one width; the camera recognises an outline.
+    /// Another part of the same width is between the fingers, and no picture distinguishes it. The fingers measure one
+    /// width; the camera recognises an outline.
     EqualPart,
-    /// An operator moved, added or removed the part after the last look: the picture of a part to fetch, or the
-    /// opening of the fingers for a part to put down. Or arm pressure or robot controller failed too recently for the
-    /// process to have read it.
+    /// An operator changed the part after the last look: the picture of a part to fetch, or the opening for a part to
+    /// put down. Or the arm failed too recently for the process to have read it.
     ChangedAfterLook,
-    /// An operator moved the part at a place without pictures: a nest, the vise, the drum. The fingers centre the
-    /// part and measure its width; nothing measures its position along the fingers.
+    /// An operator moved the part at a nest, the vise or the drum. The fingers centre it and measure its width, but
+    /// nothing measures its position along the fingers.
     NoPicture,
-    /// An operator put a part at the destination of another one, or in its way. No picture of a destination is taken:
-    /// the part in the fingers hides it from the camera, and a nest has no view.
+    /// An operator put a part at the destination of another one, or in its way, of which no picture is taken.
     Occupied,
     /// The status names this part of the goal as unconfirmed, as the machine has no sensor for it.
     Unconfirmed,
@@ -120,7 +115,7 @@ pub enum Verdict {
     False,
 }
 
-/// A judged confirmation. The field names are those of the JSON object.
+/// The field names are those of the JSON object.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Confirmation {
     /// Tick in which the status became *finished*.
@@ -169,16 +164,14 @@ struct Order {
     claims: Vec<Claim>,
 }
 
-/// The commands and the status of a level.
 #[derive(Clone, Debug, Default)]
 struct Watched {
     /// The present command and its predecessor: a status in the tick of a new command belongs to the old one.
     orders: [Order; 2],
-    /// Number of the command that is reported as finished, if any.
-    finished: Option<u32>,
+    finished: Option<u32>, // number of the command that is reported as finished, if any
 }
 
-/// Counts of a judge. The field names are those of the JSON object.
+/// The field names are those of the JSON object.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TruthResult {
     pub judged: u64,

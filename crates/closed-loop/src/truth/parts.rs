@@ -11,7 +11,6 @@ use super::{
     untruth::{Untruth, expect},
 };
 
-/// All free parts of a name.
 pub fn named<'p>(parts: &'p [PartState], object: &'p str) -> impl Iterator<Item = &'p PartState> {
     parts.iter().filter(move |part| part.name == object)
 }
@@ -60,7 +59,6 @@ pub fn is_held(
     let not_sensed = if unseen && history.is_changed(id) {
         Some(NotSensed::NoPicture)
     } else if history.is_any_changed_since_look(object.as_str()) || history.is_any_changed_since_grasp() {
-        // An obstacle put down by an operator pushes the part along the fingers.
         Some(NotSensed::ChangedAfterLook)
     } else {
         history.displaced(id).or_else(|| history.occupied(cell, id))
@@ -98,7 +96,6 @@ pub fn is_placed(cell: &Cell, history: &History, object: &Name16, goal: &Frame) 
         return Err(Untruth { text: format!("{object} is not in the cell"), not_sensed });
     };
     if part.name != object.as_str() {
-        // The grasp's claim covers the identity of the held part.
         return Ok(());
     }
     let tolerance = cell.description().placing_tolerance;

@@ -1,13 +1,9 @@
 //! Checks the positions of the parts: each must be where the last command that moved it should have left it.
 //!
-//! A command moves a part if the gripper holds the part during the command. At its end its verb determines the
-//! required place (V.4.1): TRANSFER puts the part down at the destination, RELEASE-TOOL leaves it in the drum,
-//! POSITION releases it at the robot's place or keeps it, and all others keep it. A failed command determines no
-//! place; sent again, it continues.
-//!
-//! From then on the part is checked in each tick until another command moves it. This gives the tick of an error: the
-//! release of the part, or the tick in which the part left its place. The position at the end of the run decides, as
-//! a tilted part may be pushed to its place later.
+//! A command moves a part if the gripper holds it meanwhile. Its verb determines the place (V.4.1): TRANSFER puts the
+//! part down at the destination, RELEASE-TOOL leaves it in the drum, POSITION releases it at the robot's place or keeps
+//! it, and all others keep it. A failed command determines no place. The part is checked in each tick until another
+//! command moves it; the position at the end of the run decides, as a tilted part may be pushed to its place later.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,7 +19,6 @@ use rcs_core::{name::Name16, tick::Tick};
 /// A location and its sector, 0 for none.
 type Place = (String, u16);
 
-/// The place at which a command must leave a part.
 #[derive(Clone, Debug, PartialEq)]
 enum Goal {
     Gripper,
@@ -35,17 +30,13 @@ enum Goal {
 struct Moved {
     goal: Goal,
     command: String,
-    /// Last position in the hand, world coordinates, in.
-    let_go: [f64; 3],
-    /// First tick off its place; `None` while at its place.
-    astray: Option<Tick>,
+    let_go: [f64; 3],     // last position in the hand, world coordinates, in
+    astray: Option<Tick>, // first tick off its place; `None` while at its place
 }
 
-/// A part that the hand holds or held.
 #[derive(Clone, Copy, Debug)]
 struct InHand {
-    /// Its position, world coordinates, in.
-    at: [f64; 3],
+    at: [f64; 3], // its position, world coordinates, in
     last: Tick,
 }
 
@@ -58,18 +49,15 @@ struct Attempt {
     is_over: bool,
 }
 
-/// The check of the parts' positions in a run.
 #[derive(Clone, Debug)]
 pub struct PlacementCheck {
-    /// Greatest distance of a part from the middle of its place, in.
-    tolerance: f64,
+    tolerance: f64, // greatest distance of a part from the middle of its place, in
     number: u32,
     attempt: Attempt,
     stands_at: Option<Place>,
     moved: BTreeMap<u32, Moved>,
     in_hand: BTreeMap<u32, InHand>,
-    /// The first command that finished without its object.
-    empty: Option<(Tick, String)>,
+    empty: Option<(Tick, String)>, // the first command that finished without its object
 }
 
 impl PlacementCheck {
@@ -207,8 +195,7 @@ fn takes_object(command: &HwsCommand) -> bool {
     command.object.is_some() && !matches!(command.command.as_str(), "POSITION" | "RELEASE-TOOL")
 }
 
-/// True for a repeated TRANSFER that was interrupted after it had put its object down: the object is at the
-/// destination, none is at the source, and there is nothing to move.
+/// True for a repeated TRANSFER that was interrupted after it had put its object down.
 fn was_done_before(command: &HwsCommand, destination: Option<&Place>, parts: &[PartState]) -> bool {
     let source = place(command.source, command.source_sector);
     let lies_at = |place: Option<&Place>| {
@@ -228,8 +215,8 @@ fn place(location: Option<Name16>, sector: Option<i32>) -> Option<Place> {
     Some((location?.to_string(), sector))
 }
 
-/// True if a part is at its place. At a place of the cell description it must be near the middle; elsewhere, and in
-/// trays, it must not have moved since its release. Vise and machining check its seat in the vise.
+/// At a place of the cell description a part must be near the middle; elsewhere, and in trays, it must not have moved
+/// since its release.
 fn is_there(goal: &Goal, let_go: [f64; 3], tolerance: f64, cell: &CellDescription, part: &PartState) -> bool {
     let place = match goal {
         Goal::Gripper => return part.held,
@@ -248,7 +235,6 @@ fn is_there(goal: &Goal, let_go: [f64; 3], tolerance: f64, cell: &CellDescriptio
     }
 }
 
-/// True if the cell has a place for the part there.
 pub(super) fn has_place(cell: &CellDescription, (location, sector): &Place, part: &str) -> bool {
     let in_tray =
         |unit: &str, sectors: usize| unit == location && (1..=sectors).contains(&usize::from(*sector));

@@ -32,8 +32,7 @@ pub fn nearest(cell: &Cell, object: &str, near: &Vector) -> Option<PartState> {
     (beside(&nearest) <= SECTOR_INCHES).then_some(nearest)
 }
 
-/// The part that a command means: the nearest one of its name within half a sector, or the one at the camera position
-/// that E-move reports, such as a part that an arm without pressure has pushed out of its sector.
+/// The nearest part of its name within half a sector, or the one at the camera position that E-move reports.
 fn meant(scene: &Scene<'_>, object: &str, near: &Vector, reported: Option<&Frame>) -> Option<PartState> {
     let is_reported = |part: &PartState| {
         reported.is_some_and(|reported| {
@@ -120,8 +119,7 @@ pub fn is_located(
     })
 }
 
-/// A part near a place, within some inches, that looks like another one to the camera: the same outline within its
-/// tolerance.
+/// A part near a place, within some inches, that looks like another one to the camera.
 pub fn looks_like(scene: &Scene<'_>, object: &str, at: &Frame, within: f64) -> Option<String> {
     let description = scene.cell.description();
     let asked = description.part(object)?;

@@ -38,8 +38,7 @@ pub fn claims(command: &SubtaskCommand, scene: &Scene<'_>) -> Vec<Claim> {
     found.into_iter().flatten().collect()
 }
 
-/// The claims of a finished PAUSE or S-PAUSE. Before its first command the pedestal calibrates itself, independent of
-/// the command (VI.5).
+/// Claims of a finished PAUSE or S-PAUSE. Before its first command the pedestal calibrates itself (VI.5).
 pub fn pause(scene: &Scene<'_>) -> Vec<Option<Claim>> {
     let pedestal = (scene.memory.subtask.pedestal.number != 0).then_some(Claim::PedestalStill);
     vec![Some(Claim::RobotStops), Some(Claim::FingersStill), pedestal]

@@ -53,7 +53,6 @@ impl Bench {
         self.cell.t3().arm().tool()
     }
 
-    /// Put a part into a sector. Returns its number.
     fn put(&mut self, part: &str, unit: &str, sector: u16) -> u32 {
         let placement = Placement::At { x: 0.0, y: 0.0, angle: 0.0 };
         let place = WorkstationAction::Place { part: part.into(), unit: unit.into(), sector, placement };
@@ -62,7 +61,6 @@ impl Bench {
         id
     }
 
-    /// Release a part with the tool at its present frame.
     fn release(&mut self, id: u32) {
         let part = self.cell.part_frame(id).expect("the part is in the cell");
         self.history.released = Some(Released { id, tick: TICK, tool: self.tool(), part });
@@ -176,7 +174,6 @@ fn part_next_to_an_added_one_is_not_sensed() {
     let goal = Frame { position: tool.position + Vector::new(0.3, 0.0, 0.0), ..tool };
     let placed = Claim::Placed { object: name("LINKBAR1_BH"), goal };
     assert_eq!(bench.not_sensed(&placed), None, "the robot was not at its goal");
-    // The part has moved since the release.
     let placed = Claim::Placed { object: name("LINKBAR1_BH"), goal: tool };
     bench.history.released.as_mut().expect("it was released").part.position.x += 1.0;
     assert_eq!(bench.not_sensed(&placed), None, "nobody has put anything there");
@@ -245,7 +242,7 @@ fn an_unconfirmed_place_in_the_fingers_covers_its_consequences() {
 
 /// Jaws without a force sensor do not show whether they press. That does not excuse a misplaced part between them.
 #[test]
-fn unconfirmed_grasp_force_covers_a_lost_part_and_no_misplaced_one() {
+fn unconfirmed_grasp_force_covers_only_a_lost_part() {
     let held = Claim::Holds { object: name("SHAFT"), place: Vec::new(), unseen: true };
     assert!(held.is_covered(Unconfirmed::GraspForce, false), "the fingers are empty");
     assert!(!held.is_covered(Unconfirmed::GraspForce, true), "it is held elsewhere");

@@ -1,5 +1,3 @@
-//! A claim that is untrue.
-
 use super::NotSensed;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +15,6 @@ impl Untruth {
     }
 }
 
-/// `Ok` if a condition holds.
 pub fn expect(condition: bool, text: impl FnOnce() -> String) -> Result<(), Untruth> {
     if condition { Ok(()) } else { Err(Untruth::is_false(text())) }
 }

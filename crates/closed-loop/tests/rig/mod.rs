@@ -71,7 +71,6 @@ impl Rig {
         devices.quick_change.end_effector_id = self.gripper;
     }
 
-    /// One tick with the given processes in the given order.
     pub fn step(&mut self, order: &[ProcessId]) {
         self.tick = self.tick.next();
         let mut after = CommonMemory::default();
