@@ -25,15 +25,11 @@ use crate::rcs_run::{
 };
 
 /// Take a board's place in a run until the run has ended.
-///
-/// # Errors
-/// [`Error`] if the board cannot take part, or if the run violates the protocol of the boards.
 pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
     let stop = match arguments.parent {
         None => interruption()?,
         Some(parent) => {
-            // A terminal and a service manager send signals to all processes of a run; only board 0 acts on them, and
-            // ends the run.
+            // Terminals and service managers send signals to all processes of a run; only board 0 acts on them.
             for signal in [SIGINT, SIGHUP, SIGTERM] {
                 signal_hook::flag::register(signal, Arc::default()).map_err(Error::Signals)?;
             }
@@ -45,8 +41,7 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
     };
     let TaskFiles { store, job, .. } = TaskFiles::load(&arguments.data, arguments.played(), true)?;
     let fingerprint = boards::fingerprint(&store, &job);
-    // Generation 0 is the task data loaded before the first tick; each reload by the job or an operator is the next
-    // one.
+    // Generation 0 is the task data loaded before the first tick; each reload is the next one.
     let mut files = BoardFiles::new(&arguments.run, store, job.reloads)
         .map_err(|source| Error::Start(StartError::Thread(source)))?;
     let join = || Member::join(&arguments.run, arguments.board, fingerprint);

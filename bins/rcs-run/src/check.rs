@@ -59,8 +59,7 @@ struct Outcome {
     /// Jobs that a mapping cannot execute: a run with it is refused.
     not_by_field: Vec<String>,
     findings: Vec<Finding>,
-    /// The findings by the datum that is probably wrong, the worst datum first.
-    data: Vec<OfDatum>,
+    data: Vec<OfDatum>, // the findings by the datum that is probably wrong, the worst datum first
     /// Reach of the arm of `--robot`.
     #[serde(skip_serializing_if = "Option::is_none")]
     reach: Option<Reach>,
@@ -69,12 +68,10 @@ struct Outcome {
 #[derive(Serialize)]
 struct OfDatum {
     datum: String,
-    /// Number of its findings, and of all findings.
     findings: usize,
     of: usize,
     errors: usize,
-    /// Positions of its findings in `findings`, errors first.
-    positions: Vec<usize>,
+    positions: Vec<usize>, // positions of its findings in `findings`, errors first
 }
 
 /// Load and report. Exit status 0 without errors, else 2.
@@ -160,8 +157,7 @@ struct Checked {
 }
 
 impl Checked {
-    /// Check everything under a data directory, without simulating motions again that earlier checks of the
-    /// same cell have simulated.
+    /// Check everything under a data directory. Motions of the same cell are not simulated again.
     fn of(data: &Path, flights: &Flights) -> Self {
         let (store, report) = match Store::load_part(data) {
             Ok((store, report)) => (Ok(store), report),
@@ -231,8 +227,7 @@ impl Checked {
         grouped(&blames).into_iter().map(of_datum).collect()
     }
 
-    /// The findings of each datum, the worst datum first, and a summary of each report, as text. It has only
-    /// the first finding of each datum, unless `all` is set.
+    /// The findings of each datum, the worst first, and a summary of each report. Without `all`, one finding per datum.
     fn text(&self, all: bool) -> String {
         let graphical = io::stdout().is_terminal();
         let findings = self.findings();
@@ -283,8 +278,7 @@ impl Checked {
     }
 }
 
-/// The cell and the text of its description, and the findings in the description, alone and together with the task
-/// data.
+/// The cell and the text of its description, and the findings in it, alone and with the task data.
 fn cell(path: &Path, store: Option<&Store>) -> (Option<(Cell, Source)>, Diagnostics) {
     let mut problems = Problems::default();
     let text = match files::read_text(path) {
@@ -311,7 +305,6 @@ fn cell(path: &Path, store: Option<&Store>) -> (Option<(Cell, Source)>, Diagnost
     (cell.ok().map(|cell| (cell, source)), report)
 }
 
-/// The findings in the fault files of a data directory.
 fn faults(data: &Path, cell: &CellDescription) -> Diagnostics {
     let mut all = Diagnostics::default();
     for path in FAULTS.all(data) {
@@ -325,7 +318,6 @@ fn faults(data: &Path, cell: &CellDescription) -> Diagnostics {
     all
 }
 
-/// The findings in the mappings of a data directory.
 fn mappings(data: &Path) -> Diagnostics {
     let mut all = Diagnostics::default();
     for path in FIELDS.all(data) {
@@ -371,7 +363,6 @@ fn robots(data: &Path) -> Diagnostics {
     all
 }
 
-/// A report with one error of a file.
 fn one(path: &Path, error: &dyn std::error::Error) -> Diagnostics {
     let mut problems = Problems::default();
     problems.general("file", format!("{}: {error}", path.display()));

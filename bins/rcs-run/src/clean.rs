@@ -6,7 +6,6 @@ use os_io::console;
 
 use crate::rcs_run::error::{Error, UNUSABLE};
 
-/// Remove the remains of killed runs, and print what was removed.
 pub fn clean() -> Result<ExitCode, Error> {
     let cleaned = executive::memory::clean()?;
     let objects = executive::memory::clean_objects()?;

@@ -18,31 +18,22 @@ use crate::rcs_run::{error::Error, programs};
 
 /// Name of the console program, which is installed in the same directory.
 const PROGRAM: &str = "rcs-console";
-/// Time between two checks of the console.
-const LOOK: Duration = Duration::from_millis(20);
+const LOOK: Duration = Duration::from_millis(20); // time between two checks of the console
 
 pub struct Console {
     stop: Arc<AtomicBool>,
-    /// Set when the run has ended.
-    over: Arc<AtomicBool>,
+    over: Arc<AtomicBool>, // set when the run has ended
     waiting: JoinHandle<()>,
 }
 
 impl Console {
-    /// Path of the console program.
-    ///
-    /// # Errors
-    /// [`Error::NoConsole`] if it is not in the directory of this program.
+    /// Path of the console program. Fails with [`Error::NoConsole`] if it is not in the directory of this program.
     pub fn program() -> Result<PathBuf, Error> {
         let program = programs::beside(PROGRAM)?;
         if program.is_file() { Ok(program) } else { Err(Error::NoConsole(program)) }
     }
 
-    /// Show a run with shared memory. When the operator leaves the console, or its terminal disappears, `stop` is set:
-    /// the robot ramps to rest, and the run ends.
-    ///
-    /// # Errors
-    /// [`Error::Console`] if it cannot be started.
+    /// Show a run with shared memory. When the operator leaves the console, or its terminal disappears, `stop` is set.
     pub fn start(program: PathBuf, run: &RunName, stop: Arc<AtomicBool>) -> Result<Self, Error> {
         let mut command = Command::new(program);
         let child = command
@@ -55,14 +46,12 @@ impl Console {
         Ok(Self { stop, over, waiting })
     }
 
-    /// After the end of a run: wait until the operator leaves the console, which shows the last picture. A
-    /// signal that ended the run or arrives now ends the console, too.
+    /// After the end of a run: wait until the operator leaves the console. A signal ends the console, too.
     pub fn wait(self) {
         while !self.waiting.is_finished() {
             self.over.store(self.stop.load(Ordering::Relaxed), Ordering::Relaxed);
             thread::sleep(LOOK);
         }
-        // The thread does not panic.
         let _ = self.waiting.join();
     }
 }

@@ -7,10 +7,7 @@ use os_io::{console, shell};
 
 use crate::rcs_run::{arguments::InitArguments, error::Error};
 
-/// Write the copy.
-///
-/// # Errors
-/// [`Error::Write`] if a file exists already, or cannot be written.
+/// Write the copy. Fails with [`Error::Write`] if a file exists already, or cannot be written.
 pub fn init(arguments: &InitArguments) -> Result<ExitCode, Error> {
     let directory = &arguments.directory;
     let count = crate::shipped::write(directory)

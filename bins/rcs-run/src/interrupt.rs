@@ -19,15 +19,11 @@ use signal_hook::{
 
 use crate::rcs_run::error::Error;
 
-/// Signals within this time after the first one are treated as one: a terminal, a shell, `timeout` and a
-/// service manager send several at once.
+/// Signals within this time are treated as one: a terminal, `timeout` and a service manager send several.
 const SAME: Duration = Duration::from_secs(1);
 
 /// A flag that an interrupt, a hang-up or a termination request sets. A second signal, [`SAME`] later, ends the
-/// program at once.
-///
-/// # Errors
-/// [`Error::Signals`] if the system refuses the handlers, or a thread.
+/// program.
 pub fn interruption() -> Result<Arc<AtomicBool>, Error> {
     let stop = Arc::new(AtomicBool::new(false));
     watch(Arc::clone(&stop)).map_err(Error::Signals)?;

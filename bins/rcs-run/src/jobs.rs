@@ -8,28 +8,21 @@ use serde::Serialize;
 
 use crate::rcs_run::{answer::answer, arguments::JobsArguments, error::Error};
 
-/// Sign that begins a comment in a job.
-const COMMENT: char = '%';
-/// Greatest length of a line, characters.
-const WIDEST: usize = 100;
+const COMMENT: char = '%'; // sign that begins a comment in a job
+const WIDEST: usize = 100; // greatest length of a line, characters
 
 #[derive(Debug, Serialize)]
 struct Listed {
     job: String,
-    /// First sentence of the comment at the top of the file; empty without one.
-    about: String,
+    about: String, // first sentence of the comment at the top of the file; empty without one
 }
 
-/// The jobs of a data directory.
 #[derive(Debug, Serialize)]
 struct Jobs {
     jobs: Vec<Listed>,
 }
 
-/// Print the list.
-///
-/// # Errors
-/// [`Error::Unlisted`] if a job cannot be read, [`Error::Output`].
+/// Print the list. Fails with [`Error::Unlisted`] if a job cannot be read, [`Error::Output`].
 pub fn jobs(arguments: &JobsArguments) -> Result<ExitCode, Error> {
     let listed = JOBS.all(&arguments.data).iter().map(|path| list(path)).collect::<Result<_, _>>()?;
     answer(&Jobs { jobs: listed }, arguments.json)?;
@@ -60,7 +53,6 @@ impl fmt::Display for Jobs {
     }
 }
 
-/// A line that fits a terminal: cut after a word if it is longer than [`WIDEST`].
 fn clipped(line: &str) -> Cow<'_, str> {
     let Some((end, _)) = line.char_indices().nth(WIDEST) else { return line.into() };
     let head = line.get(..end).unwrap_or(line);

@@ -1,8 +1,7 @@
 //! `rcs-run latency`: measures how late this machine wakes a thread that sleeps on the 40 ms grid.
 //!
-//! The thread has the same settings as the ticks of a run (locked memory, SCHED_FIFO, one core). It sleeps
-//! until each slot begins and reads the clock. The result is the operating system's share of a tick's jitter.
-//! Measure under the load that the machine has when it controls the robot.
+//! The thread has the settings of the ticks of a run (locked memory, SCHED_FIFO, one core). The result is the operating
+//! system's share of a tick's jitter. Measure under the load of normal operation.
 
 use std::{
     fmt,
@@ -34,9 +33,7 @@ const EDGES: [u64; 10] = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 40_000
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Fitness {
-    /// Wake-up latencies are so small that they have no effect on the line.
     Good,
-    /// Frames are on the line within their tick.
     Usable,
     Poor,
 }
@@ -71,8 +68,7 @@ struct Measurement {
     wakeups: u64,
     skipped: u64,
     late_us: Late,
-    /// Histogram: upper edge in microseconds, and number of wake-ups up to it.
-    histogram: Vec<(u64, u64)>,
+    histogram: Vec<(u64, u64)>, // Histogram: upper edge in microseconds, and number of wake-ups up to it
     machine: String,
     realtime: String,
     verdict: Fitness,
@@ -87,10 +83,7 @@ struct Late {
     max: f64,
 }
 
-/// Measure and print.
-///
-/// # Errors
-/// [`Error`] if signals cannot be caught, or the result cannot be printed.
+/// Measure and print. Fails with [`Error`] if signals cannot be caught, or the result cannot be printed.
 pub fn latency(arguments: &LatencyArguments) -> Result<ExitCode, Error> {
     let interrupted = interruption()?;
     let machine = Machine::look();

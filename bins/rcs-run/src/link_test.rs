@@ -1,8 +1,7 @@
 //! `rcs-run link-test`: measures round trips on a DEPC link, and prints a verdict.
 //!
-//! The host of [`depc::host`] starts the link and then sends, every 40 ms, the position that the robot has reported, so
-//! that the robot does not move. The latency of an answer ends when its byte is readable, not at the next tick. A frame
-//! is in time if its ACK arrives within a tick, since the next frame then follows without a gap.
+//! The host of [`depc::host`] sends, every 40 ms, the position that the robot has reported, so that it does not move. A
+//! frame is in time if its ACK arrives within a tick: the next frame then follows without a gap.
 
 mod dump;
 mod tally;
@@ -34,13 +33,9 @@ use crate::rcs_run::{
     interrupt::interruption,
 };
 
-/// Length of a tick.
-const PERIOD: Duration = Duration::from_millis(TICK_MS);
+const PERIOD: Duration = Duration::from_millis(TICK_MS); // length of a tick
 
-/// Test the link and print the result. Exit status 0 if the link is usable, 1 if not, 3 if the link never came up.
-///
-/// # Errors
-/// [`Error`] if the test cannot run.
+/// Test the link and print the result. Exit status 0 if the link is usable, 1 if not, 3 if it never came up.
 pub fn link_test(arguments: &LinkTestArguments) -> Result<ExitCode, Error> {
     let RobotKind::Serial(settings) = &arguments.robot.kind else { return Err(Error::NoLinkToTest) };
     let interrupted = interruption()?;
@@ -65,12 +60,10 @@ pub fn link_test(arguments: &LinkTestArguments) -> Result<ExitCode, Error> {
     })
 }
 
-/// A data command without an answer yet.
 #[derive(Clone, Copy)]
 struct Outstanding {
     sent: Instant,
-    /// Time when a byte that can be its ACK was readable.
-    answered: Option<Instant>,
+    answered: Option<Instant>, // time when a byte that can be its ACK was readable
 }
 
 struct Test {

@@ -21,7 +21,6 @@ fn main() -> ExitCode {
     match outcome {
         Ok(code) => code,
         Err(error) => {
-            // The reason is the last line on standard error, after any details.
             let details = error.details();
             if !details.is_empty() {
                 stderr_drawn(details.trim_end());

@@ -1,10 +1,8 @@
 //! Messages for failures of shared memory, in the operating system or in iceoryx2.
 //!
-//! Shared memory consists of files in a memory file system. If it is full when a page is first written, or if another
-//! process truncates such a file, the system can only end the program with the signal SIGBUS, without a reason.
-//! `executive::memory::place` checks the free space before, but other programs can fill `/dev/shm` in between.
-//!
-//! If another process damages shared memory during its set-up, iceoryx2 can wait forever ([`stuck`]).
+//! If shared memory is full when a page is first written, or another process truncates a file, the system ends the
+//! program with SIGBUS. `executive::memory::place` checks the free space before. If another process damages shared
+//! memory during its set-up, iceoryx2 can wait forever ([`stuck`]).
 
 use std::{sync::Arc, time::Duration};
 
@@ -22,20 +20,12 @@ const WORDS: &[u8] =
     b"\nrcs-run: shared memory went away under the program: /dev/shm is full, or another process cut an object short; \
       the robot gets no further point\n";
 
-/// Turn the signal at the file size limit of `ulimit -f` into an error of the write, like that of a full disk, so that
-/// the program does not end.
-///
-/// # Errors
-/// [`Error::Signals`] if the system refuses the handler.
+/// Turn the signal at the file size limit of `ulimit -f` into an error of the write.
 pub fn survive_file_limit() -> Result<(), Error> {
     flag::register(SIGXFSZ, Arc::default()).map(drop).map_err(Error::Signals)
 }
 
-/// Make this program print the reason when SIGBUS ends it for lack of memory. The exit status is that of a stopped
-/// robot.
-///
-/// # Errors
-/// [`Error::Signals`] if the system refuses the handler.
+/// Make this program print the reason when SIGBUS ends it. The exit status is that of a stopped robot.
 #[expect(unsafe_code, reason = "what a signal handler may do is for its author to see to")]
 pub fn explain() -> Result<(), Error> {
     let last_words = || {
@@ -43,8 +33,7 @@ pub fn explain() -> Result<(), Error> {
         let _ = write(stderr(), WORDS);
         exit(i32::from(STOPPED));
     };
-    // SAFETY: a handler may call `write` and `_exit`, which `exit` is. The handler does not allocate or lock, and does
-    // not return to the code that failed.
+    // SAFETY: the handler only calls `write` and `exit`, which may be called in a handler. It does not return.
     unsafe { register(SIGBUS, last_words) }.map(drop).map_err(Error::Signals)
 }
 

@@ -9,8 +9,7 @@ use runtime::{
     result::{EmergencyResult, TickTimes},
 };
 
-/// Number of printed events; the log has the rest.
-const EVENTS_SHOWN: usize = 10;
+const EVENTS_SHOWN: usize = 10; // number of printed events; the log has the rest
 
 /// The text: the result, all steps of the job, and remarks that are not in the JSON object.
 pub struct Page<'a>(pub &'a RunOutcome);

@@ -35,16 +35,11 @@ use crate::rcs_run::{
 
 /// Limit of coordinates in inches and of angles in degrees, far beyond every arm.
 const FARTHEST: f64 = 1000.0;
-/// Ticks until a pressed record button has recorded the pose.
-const RECORD_TICKS: u64 = 3;
-/// Longest wait for these ticks.
-const RECORD_LIMIT: Duration = Duration::from_millis(500);
+const RECORD_TICKS: u64 = 3; // ticks until a pressed record button has recorded the pose
+const RECORD_LIMIT: Duration = Duration::from_millis(500); // longest wait for these ticks
 
-/// Print a pose, and write its form on request. Exit status 2 if the robot cannot reach the pose; the form is
-/// then not written.
-///
-/// # Errors
-/// [`Error`] if the data or the run cannot be read, or the file cannot be written.
+/// Print a pose, and write its form on request. Exit status 2 if the robot cannot reach the pose, which is then not
+/// written.
 pub fn pose(arguments: &PoseArguments) -> Result<ExitCode, Error> {
     let store = store(&arguments.data)?;
     let pose = asked(arguments, &store)?;
@@ -58,9 +53,6 @@ pub fn pose(arguments: &PoseArguments) -> Result<ExitCode, Error> {
 }
 
 /// `check --where NAME`: the same as `pose --of NAME`.
-///
-/// # Errors
-/// [`Error`] if the data cannot be read, or no pose has the name.
 pub fn place(data: &Path, name: &str, json: bool) -> Result<ExitCode, Error> {
     let store = store(data)?;
     let is_usable = show(&named(name, &store)?.pose, &store, data, json)?;
@@ -86,7 +78,6 @@ fn show(pose: &Pose, store: &Store, data: &Path, json: bool) -> Result<bool, Err
     Ok(answered.is_usable())
 }
 
-/// The pose that the arguments select.
 fn asked(arguments: &PoseArguments, store: &Store) -> Result<Pose, Error> {
     if let [x, y, z] = *arguments.point {
         let frame = standing([x, y, z], arguments.azimuth, arguments.tilt, arguments.roll);
@@ -105,8 +96,7 @@ fn asked(arguments: &PoseArguments, store: &Store) -> Result<Pose, Error> {
     })
 }
 
-/// Common memory some ticks later. The controller carries out `joystick record` in the tick after its answer, so an
-/// earlier reading would show the previous record. A run without further ticks has no request to carry out.
+/// Common memory some ticks later: `joystick record` is carried out in the tick after its answer.
 fn settled(attached: &Attached) -> Result<CommonMemory, Error> {
     let first = attached.memory()?;
     let begun = Instant::now();
@@ -120,7 +110,6 @@ fn settled(attached: &Attached) -> Result<CommonMemory, Error> {
     }
 }
 
-/// A pose of the task data.
 fn named<'a>(name: &str, store: &'a Store) -> Result<&'a PoseRecord, Error> {
     let data = store.view();
     let unknown = || {
@@ -132,10 +121,7 @@ fn named<'a>(name: &str, store: &'a Store) -> Result<&'a PoseRecord, Error> {
     data.pose_named(&name).and_then(|id| data.pose(id)).ok_or_else(unknown)
 }
 
-/// The frame of a tool at a point (in), tilted from straight down towards an azimuth and turned by a roll, all degrees.
-///
-/// # Errors
-/// A message about the number that is out of range.
+/// The frame of a tool at a point (in), tilted from straight down towards an azimuth and turned by a roll, degrees.
 pub fn standing([x, y, z]: [f64; 3], azimuth: f64, tilt: f64, roll: f64) -> Result<Frame, String> {
     let wrong =
         |numbers: [f64; 3]| numbers.into_iter().find(|number| !(-FARTHEST..=FARTHEST).contains(number));
@@ -153,7 +139,6 @@ pub fn standing([x, y, z]: [f64; 3], azimuth: f64, tilt: f64, roll: f64) -> Resu
     Ok(Frame { position: Vector::new(x, y, z), rotation })
 }
 
-/// Write the form into the file, and print the changed lines.
 fn write(
     arguments: &PoseArguments,
     file: &Path,

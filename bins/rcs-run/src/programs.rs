@@ -1,4 +1,4 @@
-//! The other programs of this workspace: their paths, and how a person starts them from the present terminal.
+//! The other programs of this workspace, and how a person starts them from the present terminal.
 
 use std::{
     env, io,
@@ -8,15 +8,11 @@ use std::{
 use os_io::shell;
 
 /// Path of a program that is installed in the directory of this one.
-///
-/// # Errors
-/// The error of the system if the path of this program is unknown.
 pub fn beside(program: &str) -> io::Result<PathBuf> {
     Ok(env::current_exe()?.with_file_name(program))
 }
 
-/// The beginning of a command line that starts a program in the same way as this one: with cargo, by a path, or
-/// by its name.
+/// The beginning of a command line that starts a program like this one: with cargo, by a path, or by its name.
 pub fn start_of(program: &str) -> String {
     let is_by_cargo = env::var_os("CARGO_MANIFEST_DIR").is_some();
     let own = env::args_os().next().map(PathBuf::from).unwrap_or_default();

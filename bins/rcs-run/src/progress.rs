@@ -1,5 +1,5 @@
-//! Progress on a terminal: the present line of the job, and the commands of the levels. A run in the background
-//! of a shell prints only its messages.
+//! Progress on a terminal: the present line of the job, and the commands of the levels. In the background of a shell
+//! only messages are printed.
 
 use std::{
     io::{self, IsTerminal},
@@ -22,8 +22,7 @@ const LEVELS: usize = 4;
 /// The progress line of a run. If standard error is not a terminal, only messages are printed.
 pub struct Progress {
     bar: Option<ProgressBar>,
-    /// True while the line can be drawn: the run is in the foreground of its terminal.
-    drawn: bool,
+    drawn: bool, // true while the line can be drawn: the run is in the foreground of its terminal
     shown: Instant,
 }
 
@@ -59,8 +58,7 @@ impl Progress {
     }
 }
 
-/// True unless another process group has the terminal of standard error. A terminal that belongs to another session
-/// has no background for this run.
+/// True unless another process group has the terminal of standard error.
 fn is_in_foreground() -> bool {
     tcgetpgrp(io::stderr()).map_or(true, |foreground| foreground == getpgrp())
 }
@@ -102,7 +100,6 @@ impl Drop for Progress {
     }
 }
 
-/// The commands of Task, Subtask, E-move and Prim as text.
 fn levels(hws: &HwsCommand, memory: &CommonMemory) -> String {
     let doing = ProcessId::ALL.iter().take(LEVELS).filter_map(|process| {
         // The line of the job already shows Task's command.

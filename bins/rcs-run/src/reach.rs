@@ -1,8 +1,5 @@
 //! `rcs-run check --robot NAME`: checks whether the arm of another robot follows the T3's tool through all jobs, and
-//! reaches every taught pose.
-//!
-//! The motions are those of `check`, simulated again point by point. Under EGM a robot keeps its initial
-//! configuration, so the check tries each configuration of the start and reports the best one.
+//! reaches every taught pose. Under EGM a robot keeps its configuration, so the check reports the best start.
 
 use std::{fmt, panic::resume_unwind, path::Path, thread};
 
@@ -32,35 +29,28 @@ pub struct Reach {
     arm: String,
     /// Angles of the axes at the start of the jobs, where EGM must begin, degrees.
     start_deg: Option<Axes>,
-    /// Number of taught poses and location points that the T3 reaches.
-    poses: usize,
-    /// Names of the poses that the arm does not reach.
-    poses_out_of_reach: Vec<String>,
+    poses: usize, // number of taught poses and location points that the T3 reaches
+    poses_out_of_reach: Vec<String>, // names of the poses that the arm does not reach
     jobs: Vec<JobReach>,
 }
 
 #[derive(Clone, Debug, Serialize)]
 struct JobReach {
     job: String,
-    /// Number of motions from point to point that the arm follows.
-    ways: usize,
+    ways: usize, // number of motions from point to point that the arm follows
     /// The axis, from 1, that is nearest to a limit, and its distance from the limit, degrees.
     axis: usize,
     margin_deg: f64,
-    /// Smallest angle of the wrist from the straight position, degrees.
-    wrist_deg: f64,
-    /// Greatest speed of each axis, degrees/s.
-    speeds_deg_s: Axes,
+    wrist_deg: f64,     // smallest angle of the wrist from the straight position, degrees
+    speeds_deg_s: Axes, // greatest speed of each axis, degrees/s
     trouble: Option<Trouble>,
 }
 
-/// Place where the arm cannot follow.
 #[derive(Clone, Debug, Serialize)]
 struct Trouble {
     line: u32,
     way: String,
-    /// Position of the tool in the work object, mm.
-    at_mm: [f64; 3],
+    at_mm: [f64; 3], // position of the tool in the work object, mm
     why: String,
 }
 
@@ -72,9 +62,6 @@ struct Bench<'a> {
 
 impl Reach {
     /// Check all jobs and poses of a data directory that have no errors.
-    ///
-    /// # Errors
-    /// If the file of the robot, the task data or the cell cannot be used.
     pub fn of(data: &Path, robot: &str) -> Result<Self, Error> {
         let path =
             ROBOTS.find(Path::new(robot), data).map_err(PlacementError::from).map_err(StartError::from)?;
@@ -264,7 +251,6 @@ impl fmt::Display for Reach {
             }?;
         }
         let speeds = self.jobs.iter().flat_map(|job| job.speeds_deg_s);
-        // Rounded, and without the sign of a negative zero.
         let start = start.map(|degrees| format!("{:.1}", (degrees * 10.0).round() / 10.0 + 0.0)).join(", ");
         writeln!(f, "  jStart for the RAPID program: [{start}]")?;
         writeln!(

@@ -30,10 +30,6 @@ fn connect(arguments: &SendArguments) -> Result<Client, Error> {
 }
 
 /// Send the requests in order, and print the answers. A refused request ends the command with exit status 1.
-///
-/// # Errors
-/// [`Error::Operator`] if the run accepts no operator, [`Error::Network`] if its address cannot be reached,
-/// [`Error::SharedMemory`] and [`Error::WhichRun`] if the run cannot be determined.
 pub fn send(arguments: &SendArguments) -> Result<ExitCode, Error> {
     let mut client = connect(arguments)?;
     for line in &arguments.lines {

@@ -14,10 +14,6 @@ use serde::Serialize;
 use crate::rcs_run::{answer::answer, arguments::StatusArguments, error::Error, memory_fault::stuck};
 
 /// Read the state of a run, and print it.
-///
-/// # Errors
-/// [`Error::SharedMemory`] if there is no such run or it cannot be read; [`Error::WhichRun`] if there are
-/// several and the command names none.
 pub fn status(arguments: &StatusArguments) -> Result<ExitCode, Error> {
     let name = match &arguments.run {
         Some(name) => name.clone(),
@@ -38,7 +34,6 @@ pub fn status(arguments: &StatusArguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// A run before its first tick.
 #[derive(Serialize)]
 struct Starting {
     run: String,
@@ -70,10 +65,7 @@ impl fmt::Display for Starting {
     }
 }
 
-/// The run in progress, if there is exactly one.
-///
-/// # Errors
-/// [`Error::SharedMemory`], [`Error::WhichRun`].
+/// The run in progress, if there is exactly one. Errors: [`Error::SharedMemory`], [`Error::WhichRun`].
 pub fn only_run() -> Result<RunName, Error> {
     let alive: Vec<_> = memory::list()?.into_iter().filter(|run| run.alive).map(|run| run.name).collect();
     match &alive[..] {

@@ -21,7 +21,6 @@ use rcs_core::{
 
 use crate::rcs_run::error::Error;
 
-/// Explanation of the form of the tables.
 const HEAD: &str = "\
 # Decision tables
 
@@ -51,7 +50,6 @@ fn page(processes: &'static [ProcessInfo]) -> String {
     text.push('\n');
     for process in processes {
         let names: Vec<_> = process.tables.iter().map(|table| table.name).collect();
-        // Writing to a String cannot fail.
         let _ = writeln!(text, "- {}: {}", link(process.name), names.join(", "));
     }
     for (index, process) in processes.iter().enumerate() {
@@ -61,7 +59,6 @@ fn page(processes: &'static [ProcessInfo]) -> String {
     text
 }
 
-/// A link to a heading of the page.
 fn link(heading: &str) -> String {
     format!("[{heading}](#{})", heading.to_lowercase().replace(' ', "-"))
 }
@@ -98,7 +95,6 @@ fn append_process(text: &mut String, process: &ProcessInfo, earlier: &[ProcessIn
     }
 }
 
-/// Append the goals of the commands of a process.
 fn append_goals(text: &mut String, goals: &[Declared]) {
     let rows = goals.iter().filter(|declared| !declared.command.is_empty()).map(|declared| {
         let goal = declared.goal;
@@ -194,7 +190,6 @@ impl Groups {
         Self { variables, actions }
     }
 
-    /// The groups that contain a table.
     fn only(mut self, table: &Table) -> Self {
         let holds = |group: &Vec<&'static Table>| group.iter().any(|other| std::ptr::eq(*other, table));
         self.variables.retain(|(_, group)| holds(group));
@@ -202,7 +197,6 @@ impl Groups {
         self
     }
 
-    /// True if these groups have nothing to explain.
     fn is_empty(&self) -> bool {
         self.variables.is_empty() && !self.actions.iter().any(|group| actions(group).next().is_some())
     }
@@ -317,7 +311,6 @@ fn prose(doc: &str) -> String {
 
 /// A Markdown table with aligned columns in the source. The column of row numbers is aligned to the right.
 fn grid<const N: usize>(text: &mut String, head: [&str; N], rows: Vec<[String; N]>) {
-    // A vertical bar would end the cell.
     let cells = |row: [String; N]| row.map(|cell| cell.replace('|', "\\|"));
     let rows: Vec<[String; N]> = rows.into_iter().map(cells).collect();
     let lengths = |column: usize| rows.iter().map(move |row| row[column].chars().count());

@@ -1,5 +1,4 @@
-//! The motions of jobs and stored routes in `rcs-run check`, simulated before the robot moves ([`paths`]), and
-//! `check --explain-job`.
+//! The motions of jobs and stored routes, simulated before the robot moves ([`paths`]), and `check --explain-job`.
 
 use std::{panic::resume_unwind, path::Path, process::ExitCode, thread};
 
@@ -23,8 +22,7 @@ use crate::rcs_run::{
     error::{Error, UNUSABLE},
 };
 
-/// The findings in the motions of jobs, in their order, and in the stored routes. `known` contains motions
-/// already simulated in the same cell.
+/// The findings in the motions of jobs and in the stored routes. `known`: motions already simulated in the same cell.
 pub fn of_all(
     jobs: &[Job],
     store: &Store,
@@ -70,7 +68,6 @@ fn of_stored(store: &Store, room: &Room, known: &Known) -> Diagnostics {
     Diagnostics::new(problems, store.places(), 0, Vec::new())
 }
 
-/// A line of a file, from 1.
 fn line(source: &Source, number: u32) -> At {
     let before = usize::try_from(number).unwrap_or(1).saturating_sub(1);
     let start: usize = source.text.split_inclusive('\n').take(before).map(str::len).sum();
@@ -79,7 +76,6 @@ fn line(source: &Source, number: u32) -> At {
     At { source: 0, start: short(start), length: short(length) }
 }
 
-/// The motions of a job as JSON.
 #[derive(Serialize)]
 struct Explained<'a> {
     #[serde(flatten)]
@@ -88,9 +84,6 @@ struct Explained<'a> {
 }
 
 /// Print all lines of a job with their motions. Exit status 2 if a motion is missing or impossible.
-///
-/// # Errors
-/// If the task data, the cell or the job cannot be read.
 pub fn explain(arguments: &CheckArguments, name: &str) -> Result<ExitCode, Error> {
     let unusable = |what: String| move |report: Box<Diagnostics>| StartError::Data { what, report };
     let data = &arguments.data;

@@ -20,8 +20,7 @@ fn json(arguments: &[&str]) -> Value {
     serde_json::from_str(&rcs_run(arguments)).expect("the output is JSON")
 }
 
-/// The undisturbed run, and a branch that an operator plays to its end, have the same number of ticks and the
-/// same digest.
+/// The undisturbed run, and a branch that an operator plays to its end, have the same digest.
 #[test]
 fn uninterrupted_branch_equals_the_ordinary_run() {
     for job in ["linkbar", "turned-part"] {
@@ -125,8 +124,7 @@ fn campaign_sample_recovers_without_damage() {
     assert!(100 * done >= 97 * branches, "{done} of {branches} branches are done");
 }
 
-/// Confirmations of a small draw, and those of its branches alone. A draw repeats with any number of threads,
-/// and one command line repeats each branch.
+/// A draw repeats with any number of threads, and one command line repeats each branch.
 #[test]
 fn drawn_disturbances_repeat_alone_and_together() {
     let draw = |threads: &str| {
@@ -152,8 +150,7 @@ fn drawn_disturbances_repeat_alone_and_together() {
     assert_eq!(alone["branches"][0]["state"], first["state"], "{kind} at {at}");
 }
 
-/// The pressure fails while a part is grasped or has just been released, and while a gripper is attached. Each
-/// of these ticks had a false confirmation.
+/// The pressure fails while a part is grasped or has just been released, and while a gripper is attached.
 #[test]
 fn lost_pressure_causes_no_false_confirmation() {
     for (job, at) in [
@@ -171,8 +168,7 @@ fn lost_pressure_causes_no_false_confirmation() {
     }
 }
 
-/// A person moves the empty robot past an object of which no picture is taken, and pushes it; and moves the
-/// robot while the jaws hold a tool, which is lost, so that they close further.
+/// A person pushes an object with the empty robot, and moves the robot while the jaws hold a tool, which is lost.
 #[test]
 fn jog_causes_no_false_confirmation() {
     for (job, at, jog) in [

@@ -30,7 +30,6 @@ impl Place {
         path.display().to_string()
     }
 
-    /// A copy of the data directory.
     fn data(&self) -> PathBuf {
         let to = self.0.path().join("data");
         copy(&data(), &to);
@@ -76,7 +75,6 @@ fn json(output: &Output) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text:?}; {}", last_line(output)))
 }
 
-/// A reader of a pipe waits until there is a writer, and devices are not files of blocks.
 #[test]
 fn blocks_are_loaded_from_regular_files_only() {
     let place = Place::new();
@@ -85,7 +83,6 @@ fn blocks_are_loaded_from_regular_files_only() {
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8_lossy(&output.stderr);
     let why = "/dev/null cannot be read: a regular file was expected";
-    // The words may be broken into lines.
     let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains(why), "{said}");
 }
@@ -101,7 +98,6 @@ fn blocks_loaded_by_a_job_are_checked_against_the_cell() {
     let refused = |line: &str| {
         let output = rcs_run(&["run", &place.job("loads", &format!("{line}\n")), "--log", "none"]);
         assert_eq!(output.status.code(), Some(2));
-        // The words may be broken into lines.
         String::from_utf8_lossy(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ")
     };
     for line in ["** load pedestal.blk", "** after 50 load pedestal.blk"] {
@@ -111,7 +107,6 @@ fn blocks_loaded_by_a_job_are_checked_against_the_cell() {
             assert!(said.contains(found) && said.contains(place), "{found}: {said}");
         }
     }
-    // An expected error must occur.
     let marked = place.job("marked", "** load pedestal.blk expect error\n** wait 1\n");
     assert_eq!(rcs_run(&["run", &marked, "--log", "none"]).status.code(), Some(0));
     fs::write(
@@ -243,7 +238,6 @@ fn shipped_data_have_no_findings() {
     assert!(found["records"]["POSE"].as_u64().unwrap() > 0, "{found}");
 }
 
-/// A copy of the data directory with one text of a file replaced.
 fn data_with(place: &Place, file: &str, from: &str, to: &str) -> String {
     let data = place.data();
     let path = data.join(file);
@@ -417,7 +411,6 @@ fn assert_announced(data: &str) {
 
 /// Changes of copied data, each with a finding that does not prevent `--stand-by`: file, text, replacement.
 const TOLERATED: [&[(&str, &str, &str)]; 5] = [
-    // A name of the cell that the task data lack.
     &[("cell.toml", "name = \"LINKBAR1_BH\"", "name = \"LINKBAR1_BX\"")],
     // The same with an error of the task data: these are not compared with the cell.
     &[
@@ -751,7 +744,7 @@ fn clean_removes_the_remains_of_a_killed_run() {
     assert!(stdout(&alive).contains(&format!("linkbar-{} is running", child.id())), "{}", stdout(&alive));
     child.kill().unwrap();
     child.wait().unwrap();
-    // A run of another test may have cleaned up already; the test requires only that nothing is left.
+    // A run of another test may have cleaned up already; the test requires only that no remains exist.
     let cleaned = rcs_run(&["clean"]);
     assert_eq!(cleaned.status.code(), Some(0));
     assert_eq!(executive_runs(child.id()), 0);

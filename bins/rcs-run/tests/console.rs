@@ -19,12 +19,10 @@ fn closed_pipe() -> Stdio {
     writer.into()
 }
 
-/// A disk without room.
 fn full() -> Stdio {
     File::options().write(true).open("/dev/full").unwrap().into()
 }
 
-/// Both ends of a pseudo-terminal.
 fn terminal() -> (OwnedFd, File) {
     let master = pty::openpt(pty::OpenptFlags::RDWR | pty::OpenptFlags::NOCTTY).unwrap();
     pty::unlockpt(&master).unwrap();
@@ -34,15 +32,13 @@ fn terminal() -> (OwnedFd, File) {
     (master, slave.into())
 }
 
-/// A terminal whose window was closed.
 fn closed_terminal() -> Stdio {
     let (master, slave) = terminal();
     drop(master);
     slave.into()
 }
 
-/// All ways to lose a stream.
-const LOST: [fn() -> Stdio; 3] = [closed_pipe, full, closed_terminal];
+const LOST: [fn() -> Stdio; 3] = [closed_pipe, full, closed_terminal]; // all ways to lose a stream
 
 /// A job that fails, with a sentence on standard error.
 const FAILS: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0\n** tray UNIT_1 4 LINKBAR1_BH 0 0 0\n";

@@ -89,7 +89,7 @@ fn sent_updates_survive_a_killed_run() {
     let mut run = place.command(&job, &[]).stdout(Stdio::null()).spawn().unwrap();
     for _ in 0..600 {
         thread::sleep(Duration::from_millis(100));
-        // The run makes the file and its tables, and then the journal. Before that, queries have no answer.
+        // Before the run has made the journal, queries have no answer.
         if place.file("items.db-wal").exists()
             && Store::open(&place.file("items.db"))
                 .is_ok_and(|store| !store.items().unwrap_or_default().is_empty())

@@ -34,7 +34,6 @@ use tempfile::TempDir;
 
 use common::command;
 
-/// A directory of one test, removed with it.
 struct Place(TempDir);
 
 impl Place {
@@ -51,7 +50,6 @@ impl Place {
     }
 }
 
-/// A robot that is always at its commanded position.
 struct Exact {
     joints: Joints,
     at: Plate,
@@ -83,12 +81,9 @@ struct Peer {
 
 #[derive(Clone, Copy, Default)]
 struct Manner {
-    /// Time until it answers, or `None` if it never does.
-    delay: Option<Duration>,
-    /// Height of the arm above HOME, 0.01 in.
-    raised: i16,
-    /// Time until it is powered up.
-    late: Duration,
+    delay: Option<Duration>, // time until it answers, or `None` if it never does
+    raised: i16,             // height of the arm above HOME, 0.01 in
+    late: Duration,          // time until it is powered up
 }
 
 impl Peer {
@@ -173,7 +168,6 @@ fn control(mut master: File, manner: Manner, stop: &AtomicBool) -> (ControllerSt
     (controller.state(), robot)
 }
 
-/// Run the program to its end.
 fn rcs_run(arguments: &[&str]) -> Output {
     command(arguments).output().unwrap()
 }
@@ -216,7 +210,6 @@ const PROMPT: Option<Duration> = Some(Duration::from_millis(2));
 /// Attempts of a test on the 40 ms grid. Other load may delay a frame in one attempt; a real error recurs in each.
 const ATTEMPTS: u32 = 5;
 
-/// Try something on the 40 ms grid: first concurrently with other tests of this file, then alone.
 fn on_the_grid(attempt: impl Fn()) {
     static ALONE: RwLock<()> = RwLock::new(());
     let is_held_up = || panic::catch_unwind(AssertUnwindSafe(&attempt)).is_err();
@@ -350,8 +343,7 @@ fn linkbar_begins_over_a_port_in_real_time() {
     });
 }
 
-/// LOAD (IV.2.4) during the ticks of a robot at a port: the block is read and checked while frames continue,
-/// and the next command uses it.
+/// LOAD (IV.2.4): the block is read and checked while frames continue, and the next command uses it.
 #[test]
 fn block_is_loaded_while_the_link_runs() {
     on_the_grid(|| {
@@ -410,7 +402,6 @@ fn block_is_loaded_while_the_link_runs() {
     });
 }
 
-/// A run over a port whose robot moves, in the middle of the first command of the linkbar.
 fn moving(place: &Place) -> Child {
     let robot = place.robot();
     let run = [

@@ -16,7 +16,6 @@ use rustix::{
 use crate::common::data::copy;
 use crate::common::{command, root};
 
-/// The program's standard error, on one line.
 fn said(output: &Output) -> String {
     let said = String::from_utf8_lossy(&output.stderr);
     said.split_whitespace().collect::<Vec<_>>().join(" ")

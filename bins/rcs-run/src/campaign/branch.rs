@@ -1,7 +1,7 @@
 //! A run that can be forked: a [`ClosedLoop`], the mailbox of its commander, and what happened in its last tick.
 //!
-//! A tick of a [`Branch`] is one of `rcs-run run` with the fast clock and the simulated robot, so that both have the
-//! same digest. Any number of copies can continue from a state, each in its own thread.
+//! A tick of a [`Branch`] is one of `rcs-run run` with the fast clock and the simulated robot, with the same digest.
+//! Any number of copies can continue from a state.
 
 use std::{
     fmt::{self, Write as _},
@@ -31,7 +31,6 @@ pub struct Facility {
 }
 
 impl Facility {
-    /// Task data, a job that was checked with them, cell and seed.
     #[must_use]
     pub fn new(store: Store, mut job: Job, description: CellDescription, seed: u64) -> Self {
         let reloads = Arc::new(std::mem::take(&mut job.reloads));
@@ -45,17 +44,12 @@ pub struct Branch<'f> {
     facility: &'f Facility,
     pub closed: ClosedLoop,
     command_box: CommandBox,
-    /// Events in the cell in the last tick.
     pub events: Vec<CellEvent>,
-    /// Confirmations of the last tick that are not true.
     pub untrue: Vec<Confirmation>,
 }
 
 impl<'f> Branch<'f> {
-    /// The run before its first tick.
-    ///
-    /// # Errors
-    /// [`Error`] if the cell cannot be built.
+    /// The run before its first tick. Fails with [`Error`] if the cell cannot be built.
     pub fn start(facility: &'f Facility) -> Result<Self, Error> {
         let cell = Cell::new(&facility.description, facility.seed).map_err(StartError::from)?;
         let (store, reloads) = (Arc::clone(&facility.store), Arc::clone(&facility.reloads));
@@ -68,9 +62,7 @@ impl<'f> Branch<'f> {
         })
     }
 
-    /// Run a tick.
     pub fn step(&mut self, commander: &mut impl Commander) {
-        // The commands come from a job that was checked when it was loaded: their fields fit into the mailbox.
         let (Settled { events, untrue, .. }, _) = self.closed.step(&mut self.command_box, commander);
         (self.events, self.untrue) = (events, untrue);
     }
@@ -90,16 +82,11 @@ impl<'f> Branch<'f> {
         self.closed.course().levels().ladder().state()
     }
 
-    /// Number of confirmations judged so far.
     #[must_use]
     pub const fn judged(&self) -> u64 {
         self.closed.truth().result().judged
     }
 
-    /// The items in the Data System.
-    ///
-    /// # Errors
-    /// A text that says why it cannot list them.
     pub fn items(&mut self) -> Result<Vec<Item>, String> {
         self.closed.books_mut().map_or(Ok(Vec::new()), |books| books.items())
     }
@@ -111,11 +98,7 @@ impl<'f> Branch<'f> {
         self.closed.line_mut().forget_past(now);
     }
 
-    /// Digest of `beside` and of everything on which the next ticks depend, without the numbers and times that
-    /// make no difference ([`past`]).
-    ///
-    /// # Errors
-    /// [`Error::Fork`] if the cell cannot be saved.
+    /// Digest of `beside` and of everything on which the next ticks depend, without the past ([`past`]).
     pub fn state(&self, beside: &impl fmt::Debug) -> Result<Digest, Error> {
         let Self { closed, command_box, .. } = self;
         let cell = closed.workstation.cell.save().map_err(|error| Error::Fork(error.to_string()))?;
@@ -138,7 +121,6 @@ impl<'f> Branch<'f> {
         let books = closed.books().map(|books| books.state(self.at()));
         let data = (closed.generations().state(), books);
         let all = (mailboxes, data, closed.contacts().state(), closed.workstation.state(), beside);
-        // Writing into a digest cannot fail.
         let _ = write!(Text(&mut digest), "{all:?}");
         Ok(digest)
     }
@@ -149,7 +131,6 @@ impl<'f> Branch<'f> {
     }
 }
 
-/// Text that is added to a digest.
 struct Text<'d>(&'d mut Digest);
 
 impl fmt::Write for Text<'_> {

@@ -35,7 +35,6 @@ impl Coverage {
         Self { states: states.into_iter().collect(), ..Self::default() }
     }
 
-    /// Number of rows, and of states.
     #[must_use]
     pub fn counts(&self) -> (usize, usize) {
         (self.rows.len(), self.states.len())
@@ -59,8 +58,7 @@ impl Coverage {
     }
 }
 
-/// True if a header can name a row with this action. Headers name neither rows that pass on to the next table
-/// nor rows of EXECUTE that accept.
+/// True if a header can name a row with this action: not one that passes on, nor one of EXECUTE that accepts.
 fn is_named(table: &str, action: &str) -> bool {
     action != "consult" && (table != EXECUTE.name || action == "Refuse")
 }

@@ -1,5 +1,4 @@
-//! Disturbances of the cell by a person between two commands: the person moves the robot aside, or moves,
-//! exchanges, adds or removes a part. Campaigns of confirmations (`--truth`) draw them.
+//! Disturbances of the cell by a person between two commands, drawn by campaigns of confirmations (`--truth`).
 
 use std::fmt;
 
@@ -9,10 +8,8 @@ use plant::{BoxAction, BoxButton, Cell, Placement, WorkstationAction, Workstatio
 
 /// Velocity of the joystick box with its knob at the end, in/s.
 const BOX_SPEED: f64 = levels::prim::manual::SPEED;
-/// Time in which a person moves the robot a short way, s.
-const SECONDS: f64 = 1.0;
-/// Greatest share of the box's velocity.
-const FASTEST: f64 = 0.5;
+const SECONDS: f64 = 1.0; // time in which a person moves the robot a short way, s
+const FASTEST: f64 = 0.5; // greatest share of the box's velocity
 /// Least share of the box's velocity. A slower robot would not stop at the intended place.
 const SLOWEST: f64 = 0.02;
 
@@ -20,17 +17,14 @@ const SLOWEST: f64 = 0.02;
 pub enum What {
     /// The joystick leads the robot by this vector, world, 0.01 in.
     Jog([i32; 3]),
-    /// A person takes a part away.
     Take(usize),
     /// A person moves a part by this vector, world, 0.01 in.
     Move(usize, [i32; 2]),
-    /// A person puts a part of another kind in the place of a part.
     Swap(usize, String),
     /// A person puts a part into a sector (0 for none) of a tray or a nest, or into the drum.
     Add(String, String, u16),
 }
 
-/// The command that follows a disturbance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Follow {
     /// PAUSE, and the interrupted command again.
@@ -72,8 +66,8 @@ impl What {
     }
 }
 
-/// `jog:30:0:-5`, `take:1`, `move:1:40:0`, `swap:1:SHAFT`, `add:SHAFT:UNIT_2:7`; with `:next` or `:again` if
-/// another command than the interrupted one follows.
+/// `jog:30:0:-5`, `take:1`, `move:1:40:0`, `swap:1:SHAFT`, `add:SHAFT:UNIT_2:7`; with `:next` or `:again` if another
+/// command follows.
 impl fmt::Display for Disturbance {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.what.word())?;
@@ -89,7 +83,6 @@ impl fmt::Display for Disturbance {
 }
 
 impl Disturbance {
-    /// The disturbance of this name, if there is one.
     #[must_use]
     pub fn named(text: &str) -> Option<Self> {
         let ends = |(then, end): &(Follow, &str)| Some((text.strip_suffix(end)?, *then));
@@ -119,15 +112,12 @@ fn inches([x, y, z]: [i32; 3]) -> Vector {
 pub struct Lead {
     start: Option<Vector>,
     way: Vector,
-    /// Along Z, after X and Y.
-    upward: bool,
-    /// Ticks without progress.
-    idle: u32,
+    upward: bool, // along Z, after X and Y
+    idle: u32,    // ticks without progress
     done: f64,
 }
 
-/// Ticks without progress after which a person gives up, as at a limit of the arm.
-const IDLE: u32 = 50;
+const IDLE: u32 = 50; // ticks without progress after which a person gives up, as at a limit of the arm
 
 impl Lead {
     /// Move the robot by a vector, 0.01 in.
@@ -142,11 +132,9 @@ impl Lead {
         Self::by(hundredths.map(|one| -one))
     }
 
-    /// The knob of the box for this way.
     #[must_use]
     pub fn knob(&self) -> u16 {
         let share = (self.way.norm() / SECONDS / BOX_SPEED).clamp(SLOWEST, FASTEST);
-        // A share of the knob's full scale, which fits.
         (share * f64::from(KNOB_FULL)) as u16
     }
 
@@ -185,12 +173,9 @@ impl Lead {
     }
 }
 
-/// A step that undoes a change of the cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Undo {
-    /// Put this kind of part back at a frame.
     Put(String, Frame),
-    /// Move a part back to a frame.
     Back(u32, Frame),
     Remove(u32),
 }
@@ -201,10 +186,8 @@ fn free(cell: &Cell) -> Vec<u32> {
     cell.parts().into_iter().map(|part| part.id).filter(|id| !had(*id)).collect()
 }
 
-/// Change the cell. Returns the numbers of the changed parts, and the step that undoes the change.
-///
-/// # Errors
-/// A message if the cell refuses the change or there is no such part; the cell is then unchanged.
+/// Change the cell. Returns the numbers of the changed parts, and the step that undoes the change. On error, the cell
+/// is unchanged.
 pub fn change(cell: &mut Cell, what: &What) -> Result<(Vec<u32>, Vec<Undo>), String> {
     let said = |error: WorkstationError| error.to_string();
     let chosen = |cell: &Cell, number: usize| {
@@ -261,10 +244,7 @@ pub fn change(cell: &mut Cell, what: &What) -> Result<(Vec<u32>, Vec<Undo>), Str
     }
 }
 
-/// Undo a change. Returns the numbers of the parts that have changed.
-///
-/// # Errors
-/// A message if the cell refuses it, for example because the robot has taken the part.
+/// Undo a change. Returns the number of the part. Fails for example if the robot has taken the part.
 pub fn undo(cell: &mut Cell, step: &Undo) -> Result<u32, String> {
     let said = |error: WorkstationError| error.to_string();
     match step {

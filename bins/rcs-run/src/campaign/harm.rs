@@ -8,12 +8,9 @@ use rcs_core::tick::Tick;
 use super::branch::Branch;
 use closed_loop::contacts::{Collision, Commands};
 
-/// Greatest distance of a part from its position in the undisturbed run, in.
-const PART: f64 = 0.5;
-/// Greatest distance of the hand from its position in the undisturbed run, in.
-const HAND: f64 = 0.5;
+const PART: f64 = 0.5; // greatest distance of a part from its position in the undisturbed run, in
+const HAND: f64 = 0.5; // greatest distance of the hand from its position in the undisturbed run, in
 
-/// True if the DEPC function controls the robot, so that it follows commanded points.
 #[must_use]
 pub fn is_commanded(branch: &Branch<'_>) -> bool {
     let t3 = branch.closed.workstation.cell.t3();
@@ -24,10 +21,8 @@ pub fn is_commanded(branch: &Branch<'_>) -> bool {
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     parts: Vec<PartAt>,
-    /// End effector id of the gripper on the robot, if there is one.
-    gripper: Option<u8>,
-    /// Middle between the fingertips, world coordinates, in.
-    hand: [f64; 3],
+    gripper: Option<u8>, // end effector id of the gripper on the robot, if there is one
+    hand: [f64; 3],      // middle between the fingertips, world coordinates, in
     items: Result<Vec<Item>, String>,
 }
 
@@ -59,8 +54,8 @@ impl World {
         Self { parts: parts.collect(), gripper: cell.gripper(), hand: cell.tool().position.into(), items }
     }
 
-    /// The first difference from the undisturbed run, as text, if any. The position of the hand matters only if
-    /// the command `moves` the robot: STARTUP and SHUTDOWN leave it in place.
+    /// The first difference from the undisturbed run, if any. The position of the hand matters only if the command
+    /// `moves` the robot.
     #[must_use]
     pub fn unlike(&self, undisturbed: &Self, moves: bool) -> Option<String> {
         if self.gripper != undisturbed.gripper {
@@ -90,7 +85,6 @@ impl World {
     }
 }
 
-/// The items as text: `LINKBAR1 at UNIT_1 4`.
 fn listed(items: &Result<Vec<Item>, String>) -> String {
     let items = match items {
         Ok(items) if items.is_empty() => return "no item".to_owned(),
@@ -126,28 +120,23 @@ impl PartAt {
     }
 }
 
-/// An event that must not happen, such as a contact or a part that slips.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Harm {
     pub tick: Tick,
     pub what: String,
     /// The sentence without numbers, by which harms are counted.
     pub kind: String,
-    /// True if a commanded point has caused it; false for an arm without pressure, a person at the joystick box, or the
-    /// robot controller's travel to HOME.
+    /// False for an arm without pressure, a person at the joystick box, or the robot controller's travel to HOME.
     pub commanded: bool,
-    /// Index of the contact, if the harm is a contact.
     contact: Option<usize>,
 }
 
 pub struct HarmMonitor {
     seen: usize,
     harms: Vec<Harm>,
-    /// The first part that has slid in the fingers while no point was commanded, for example when the arm jumps at the
-    /// start-up.
+    /// The first part that has slid in the fingers while no point was commanded, such as at the start-up.
     slide: Option<(String, Harm)>,
-    /// Parts in contacts that no commanded point has caused.
-    moved: Vec<String>,
+    moved: Vec<String>, // parts in contacts that no commanded point has caused
 }
 
 impl HarmMonitor {
@@ -161,7 +150,6 @@ impl HarmMonitor {
         }
     }
 
-    /// True if nothing has happened yet that could be harm.
     #[must_use]
     pub const fn has_seen_nothing(&self) -> bool {
         self.harms.is_empty() && self.slide.is_none() && self.moved.is_empty()
@@ -173,8 +161,8 @@ impl HarmMonitor {
         self.harms.iter().find(|harm| harm.commanded).or_else(|| self.harms.first())
     }
 
-    /// True if the difference `unlike` of a part results from a slide; the slide is then harm. No sensor shows
-    /// where in the fingers the part is. A slide without consequence is harmless.
+    /// True if the difference `unlike` of a part results from a slide, which then is harm: no sensor shows where in the
+    /// fingers the part is.
     pub fn attribute_to_slide(&mut self, unlike: &str) -> bool {
         match self.slide.take_if(|(part, _)| unlike.is_empty() || unlike.starts_with(part.as_str())) {
             Some((_, harm)) => {
@@ -228,15 +216,14 @@ impl HarmMonitor {
         }
     }
 
-    /// True if the controller cannot know where the part lies: it has slid in the fingers, or was in a contact that no
-    /// commanded point has caused.
+    /// True if the part has slid in the fingers, or was in a contact that no commanded point has caused.
     fn is_moved(&self, part: &str) -> bool {
         self.slide.as_ref().is_some_and(|(slid, _)| slid == part)
             || self.moved.iter().any(|moved| moved == part)
     }
 
-    /// True if an arm without pressure or a person has touched something or made a part slide in the fingers. The
-    /// controller cannot know the positions of parts then.
+    /// True if an arm without pressure or a person has touched something: the controller cannot know the positions of
+    /// parts then.
     fn is_displaced(&self) -> bool {
         self.slide.is_some() || self.harms.iter().any(|harm| !harm.commanded)
     }

@@ -1,13 +1,12 @@
 //! Invariants that hold after every tick of a branch, whichever interruption preceded it.
 //!
 //! * each process that runs has stamped its outputs with this tick;
-//! * the tick of the control processes has not allocated;
-//! * the distance between Prim's successive points is within the link's limit (14 in/s, 1 rad/s). Near the poles of
-//!   the T3's wrist, where D and R turn faster than the tool, T3 Interface takes longer for a point; this is permitted;
+//! * the distance between Prim's successive points is within the link's limit (14 in/s, 1 rad/s). Near the poles of the
+//! T3's wrist T3 Interface takes longer for a point; this is permitted;
 //! * E-move's status of the gripper is true: it holds an object, or nothing.
 //!
-//! The first three hold at all times. Sensors report late, and during a fault wrongly, what the fingers hold:
-//! E-move may be wrong for [`PATIENCE`] ticks after an interruption is over.
+//! The first three hold at all times. E-move may be wrong for [`PATIENCE`] ticks after an interruption, because sensors
+//! report late.
 
 use executive::alloc;
 use geometry::{frame::INCHES_PER_RADIAN, pose::WireFrame};
@@ -33,8 +32,7 @@ const STEP_RADIANS: f64 = LINK_VELOCITY / INCHES_PER_RADIAN * TICK_S + 0.002;
 #[derive(Clone, Debug)]
 pub struct Invariants {
     allocations: u64,
-    /// The last point that Prim has sent since it started the link.
-    point: Option<WireFrame>,
+    point: Option<WireFrame>, // the last point that Prim has sent since it started the link
     wrong: u32,
 }
 
@@ -46,7 +44,6 @@ impl Invariants {
         Self { allocations: alloc::allocations(), point, wrong: 0 }
     }
 
-    /// True if all invariants held in the last tick.
     #[must_use]
     pub const fn hold(&self) -> bool {
         self.wrong == 0
@@ -89,7 +86,6 @@ fn steps_too_far(last: &mut Option<WireFrame>, sent: &T3iCommand) -> bool {
     }
 }
 
-/// A process that runs and has not stamped its outputs with this tick.
 fn unstamped(branch: &Branch<'_>) -> Option<String> {
     let (tick, memory) = (branch.at(), branch.memory());
     let names = Ladder::processes().iter().map(|process| process.name);

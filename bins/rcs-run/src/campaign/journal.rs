@@ -1,8 +1,7 @@
 //! The file to which a campaign appends each judged branch, so that a stopped campaign can continue.
 //!
-//! Each line is a JSON object: the campaign, the branch, and the rows and states that it was the first to
-//! reach. A drawn branch lists all that it has reached, since they decide the next draw. Lines are used only if
-//! they belong to the same campaign: same undisturbed run, program and procedure.
+//! Each line is a JSON object: the campaign, the branch, and the rows and states that it was the first to reach; a
+//! drawn branch lists all. Lines are used only with the same undisturbed run, program and procedure.
 
 use std::{
     borrow::Cow,
@@ -30,8 +29,7 @@ struct Line<'a> {
     met: Cow<'a, Coverage>,
 }
 
-/// The branches judged before, and the file to which new ones are appended. The default journal is empty and
-/// has no file.
+/// The branches judged before, and the file to which new ones are appended, if any.
 #[derive(Debug, Default)]
 pub struct Journal {
     file: Option<(PathBuf, File)>,
@@ -39,11 +37,9 @@ pub struct Journal {
     known: HashMap<(u64, String), Judged>,
 }
 
-/// A branch with its coverage.
 pub type Judged = (BranchResult, Coverage);
 
-/// Identifies a campaign: equal branches of the same campaign end the same way. The journal has the whole
-/// coverage of a drawn branch, and the new coverage of other branches.
+/// Identifies a campaign: equal branches of the same campaign end the same way.
 #[must_use]
 pub fn campaign(facility: &Facility, parent: &Parent, procedure: Procedure, drawn: bool) -> String {
     let Procedure { recovery, tries, until } = procedure;
@@ -57,11 +53,7 @@ pub fn campaign(facility: &Facility, parent: &Parent, procedure: Procedure, draw
 }
 
 impl Journal {
-    /// Read the lines of a campaign from the file, or create it. An incomplete last line, as a killed program
-    /// leaves it, is removed.
-    ///
-    /// # Errors
-    /// [`Error`] if the file cannot be read or written, or is not a journal.
+    /// Read the lines of a campaign from the file, or create it. An incomplete last line is removed.
     pub fn open(path: &Path, campaign: &str) -> Result<Self, Error> {
         let read = |source| StartError::Read { path: path.to_owned(), source };
         let mut file = OpenOptions::new()
@@ -100,10 +92,6 @@ impl Journal {
         self.known.get(&(plan.at, plan.series.to_string()))
     }
 
-    /// Append the result of a branch.
-    ///
-    /// # Errors
-    /// [`Error`] if it cannot be written.
     pub fn write(&self, result: &BranchResult, met: &Coverage) -> Result<(), Error> {
         let Some((path, file)) = &self.file else { return Ok(()) };
         let (branch, met) = (Cow::Borrowed(result), Cow::Borrowed(met));

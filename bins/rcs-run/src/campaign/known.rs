@@ -1,14 +1,12 @@
 //! States of completed branches. A branch that reaches one of them is done, too.
 //!
-//! A tick depends only on the state. Two branches with the same state in the same tick, except for the values that
-//! [`past`](super::past) removes, continue alike, and the second one need not run to its end. Many interruptions leave
-//! no trace, such as the fault of an unused sensor, or the same trace as at another tick, such as a restarted process.
+//! Two branches with the same state in the same tick, except for the values that [`past`](super::past) removes,
+//! continue alike. Many interruptions leave no trace, or the same trace as at another tick.
 //!
-//! The judge of confirmations does not belong to the state. Whether a confirmation is true depends on the command, the
-//! cell, and where the robot has released a part. A part that lies in the same place was released there, since branches
-//! in which a part has slid are not compared. The judge's other data, such as the parts that a person has changed, only
-//! explain why no sensor could show a false confirmation. The states of a branch are therefore known only if all its
-//! confirmations were true. The number of confirmations judged from a state to the end is stored with it.
+//! The judge of confirmations does not belong to the state: whether a confirmation is true depends on the command, the
+//! cell, and where the robot has released a part. Branches in which a part has slid are not compared, and states are
+//! known only if all confirmations of the branch were true. The number of confirmations from a state to the end is
+//! stored with it.
 //!
 //! ```text
 //!   branch 1  --x----------+-----------+-----------+------- done     x  interrupted
@@ -28,7 +26,6 @@ const EVERY: u64 = 50;
 
 type State = (Tick, u64);
 
-/// The end of a branch that is done.
 #[derive(Clone, Debug)]
 pub struct End {
     pub until: Tick,
@@ -58,7 +55,6 @@ pub struct Rest {
 pub struct Known(Mutex<HashMap<State, Rest>>);
 
 impl Known {
-    /// True if the states of branches are compared after this tick.
     #[must_use]
     pub const fn compares(tick: Tick) -> bool {
         tick.0.is_multiple_of(EVERY)

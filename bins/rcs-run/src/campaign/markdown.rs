@@ -2,10 +2,8 @@
 
 use std::fmt::Write as _;
 
-/// The line before the table.
 const BEGIN: &str = "<!-- campaign: made by rcs-run campaign JOB... --markdown FILE -->";
-/// The line after the table.
-const END: &str = "<!-- end of the campaign -->";
+const END: &str = "<!-- end of the campaign -->"; // the line after the table
 const FIRST: &str = "interruption";
 
 #[derive(Debug, PartialEq)]
@@ -14,10 +12,7 @@ pub struct Column {
     pub cells: Vec<(String, String)>,
 }
 
-/// The page with the table, or the table alone if there is no page.
-///
-/// # Errors
-/// A message if the page has no place for the table.
+/// The page with the table, or the table alone without a page. Fails if the page has no place for it.
 pub fn page(page: Option<&str>, fresh: &[Column]) -> Result<String, String> {
     let parts = match page {
         None => Some(("", "", "\n")),
@@ -73,7 +68,6 @@ fn table(columns: &[&Column]) -> String {
                 cell.map_or("", |(_, cell)| cell.as_str())
             })
             .collect();
-        // Writing to a String cannot fail.
         let _ = writeln!(text, "| {interruption} | {} |", cells.join(" | "));
     }
     text

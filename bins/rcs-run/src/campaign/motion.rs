@@ -9,20 +9,16 @@ use super::{branch::Branch, verdict::Verdict};
 const STILL: u64 = 300;
 /// Ticks within which everything must come to rest: five minutes, the time limit of a command.
 const LIMIT: u64 = 7500;
-/// Motion per tick below which a joint is at rest, radians: about a fortieth of the limit of
-/// [`plant::t3::T3Controller::at_rest`].
+/// Motion per tick below which a joint is at rest, radians.
 const ANGLE: f64 = 2e-6;
-/// Motion per tick below which a finger is at rest, in.
-const OPENING: f64 = 1e-4;
+const OPENING: f64 = 1e-4; // motion per tick below which a finger is at rest, in
 
-/// Positions of everything that a control process moves.
 #[derive(Clone, Debug)]
 struct Posture {
     /// Joints of the robot, rad; `None` if it has sagged without pressure, where it creeps for minutes.
     joints: Option<Joints>,
     table: Rotation,
-    /// Openings of the robot's gripper and of the pedestal's hand, in.
-    openings: [f64; 4],
+    openings: [f64; 4], // openings of the robot's gripper and of the pedestal's hand, in
 }
 
 impl Posture {
@@ -51,8 +47,7 @@ pub struct Motion {
     posture: Posture,
     began: Tick,
     now: Tick,
-    /// The last tick in which something moved.
-    last: Tick,
+    last: Tick, // the last tick in which something moved
 }
 
 impl Motion {
@@ -63,7 +58,6 @@ impl Motion {
         Self { posture: Posture::of(branch), began, now: began, last: began }
     }
 
-    /// True if no tick has followed the stop.
     #[must_use]
     pub fn has_just_begun(&self) -> bool {
         self.now == self.began
@@ -83,8 +77,7 @@ impl Motion {
         self.last.since(self.began)
     }
 
-    /// The verdict, as soon as the branch can be judged. `commanded` is true if a commanded point has caused
-    /// the worst harm.
+    /// The verdict, as soon as the branch can be judged. `commanded` is that of the worst harm.
     #[must_use]
     pub fn verdict(&self, commanded: Option<bool>) -> Option<Verdict> {
         let (still, all) = (self.now.since(self.last), self.now.since(self.began));

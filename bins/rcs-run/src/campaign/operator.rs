@@ -1,7 +1,7 @@
 //! Plays the job after an interruption: first the operator's recovery procedure, then the rest of the job.
 //!
-//! The procedure: PAUSE, and the same command again, up to a number of tries. When the command is `finished`,
-//! the job continues with its next line. `** after` lines that have begun do not begin again.
+//! The procedure: PAUSE, and the same command again, up to a number of tries; then the job continues with its next
+//! line. `** after` lines that have begun do not begin again.
 //!
 //! ```text
 //!   interruption ──► [a command of the operator] ──► PAUSE ──► the same command ──► next lines of the job ──► over
@@ -25,19 +25,14 @@ use closed_loop::{Commander, workstation::SimulatedWorkstation};
 const REST_LIMIT: u64 = 25;
 /// Time limit of a command, ticks: five minutes, as in a run.
 const TIME_LIMIT: u64 = neighbours::workstation::player::TIME_LIMIT;
-/// Ticks within which Task must echo a command.
-const ECHO_LIMIT: u64 = 25;
+const ECHO_LIMIT: u64 = 25; // ticks within which Task must echo a command
 
 #[derive(Clone, Debug, PartialEq)]
 enum Doing {
-    /// A command that is not one of the job, and what follows its end.
     Own(Then),
     Pause,
-    /// The current line is a command, which Task has accepted.
     Command,
-    /// The command failed while the interruption continues.
     Failed,
-    /// The current line is an action of the workstation.
     Action,
     Over,
     /// The command failed, and no try is left.
@@ -61,10 +56,8 @@ pub enum Recovery {
     Same,
 }
 
-/// The end of a command or action.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ended {
-    /// Tick in which the operator saw the end.
     pub tick: Tick,
     /// Position in the job: 0 for the first PAUSE.
     pub line: usize,
@@ -76,7 +69,6 @@ pub struct Ended {
     pub failure: String,
 }
 
-/// An action that begins at a later tick.
 #[derive(Debug)]
 struct Later {
     due: Tick,
@@ -86,16 +78,12 @@ struct Later {
 
 pub struct Operator<'f> {
     lines: &'f [JobLine],
-    /// Position in the job: 0 is the first PAUSE, `n` is `lines[n - 1]`.
-    current: usize,
+    current: usize, // position in the job: 0 is the first PAUSE, `n` is `lines[n - 1]`
     doing: Doing,
-    /// Tick in which the command or the action began.
-    began: Tick,
+    began: Tick, // tick in which the command or the action began
     number: u32,
-    /// Number of the job's command that a command of the operator replaces.
-    replaced: Option<u32>,
-    /// True if the job's command finished during the interruption, or before Task accepted the operator's
-    /// command. It is then not sent again.
+    replaced: Option<u32>, // number of the job's command that a command of the operator replaces
+    /// True if the job's command finished before Task accepted the operator's; it is then not sent again.
     has_finished: bool,
     outgoing: Option<HwsCommand>,
     /// True while the interruption continues: the operator waits.
@@ -103,8 +91,7 @@ pub struct Operator<'f> {
     recovery: Recovery,
     tries: u32,
     tried: u32,
-    /// Ticks from the first repeated command to its PAUSE; `None` for no PAUSE.
-    second_pause: Option<u64>,
+    second_pause: Option<u64>, // ticks from the first repeated command to its PAUSE; `None` for no PAUSE
     later: Vec<Later>,
     delayed: Vec<(u64, Action, String)>,
     ended: Vec<Ended>,
@@ -144,8 +131,7 @@ impl<'f> Operator<'f> {
         self
     }
 
-    /// Record an interruption: all tries are available again. A PAUSE follows the first repeated command after
-    /// `second_pause` ticks.
+    /// Record an interruption: all tries are available again. A second PAUSE follows after `second_pause` ticks.
     pub const fn interrupt(&mut self, second_pause: Option<u64>) {
         (self.tried, self.has_finished) = (0, false);
         self.second_pause = second_pause;
@@ -192,7 +178,6 @@ impl<'f> Operator<'f> {
         }
     }
 
-    /// Send a PAUSE; the current line follows it.
     pub fn pause(&mut self, tick: Tick) {
         self.replace(Doing::Pause);
         self.send(tick, &pause());
@@ -217,10 +202,8 @@ impl<'f> Operator<'f> {
         matches!(self.doing, Doing::Own(Then::SameCommand))
     }
 
-    /// The state after tick `now` on which the operator's next action depends. Commands are numbered from `newest`.
-    ///
-    /// The tick in which a command began is not part of it once Task has had the time to echo the command: see
-    /// [`Self::waits_until`].
+    /// The state after tick `now` on which the operator's next action depends. Commands are numbered from `newest`. The
+    /// beginning of a command is not part of it after [`Self::waits_until`].
     pub fn state(&self, now: Tick, newest: u32) -> impl fmt::Debug {
         let is_echoed = now.since(self.began) > ECHO_LIMIT.max(REST_LIMIT);
         let is_timed = self.doing != Doing::Command || !is_echoed || self.second_pause.is_some();
@@ -238,7 +221,6 @@ impl<'f> Operator<'f> {
         tick.since(self.began) <= TIME_LIMIT
     }
 
-    /// The commands and actions ended since the last call.
     pub fn ended(&mut self) -> Vec<Ended> {
         std::mem::take(&mut self.ended)
     }
@@ -320,7 +302,6 @@ impl<'f> Operator<'f> {
         }
     }
 
-    /// Begin the next line of the job.
     fn next(&mut self, tick: Tick, workstation: &mut SimulatedWorkstation) {
         self.current += 1;
         (self.tried, self.second_pause, self.has_finished) = (0, None, false);
@@ -353,7 +334,6 @@ impl<'f> Operator<'f> {
         }
     }
 
-    /// True if the action of the current line has ended.
     fn is_done(&self, tick: Tick, workstation: &SimulatedWorkstation) -> bool {
         match self.current.checked_sub(1).and_then(|at| self.lines.get(at)).map(|line| &line.step) {
             Some(Step::Workstation(Action::Wait { ticks })) => tick.since(self.began) >= u64::from(*ticks),
@@ -442,7 +422,7 @@ impl Operator<'_> {
     }
 }
 
-/// An operator at joystick box or panel, who sends no command: Task continues its command, and may finish it.
+/// An operator at joystick box or panel without a command: Task continues its command, and may finish it.
 pub struct Watching<'o, 'f>(pub &'o mut Operator<'f>);
 
 impl Commander for Watching<'_, '_> {

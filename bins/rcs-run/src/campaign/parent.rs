@@ -1,5 +1,4 @@
-//! The undisturbed run: the line of the job executed in each tick, the world at the end of each line, and the
-//! ticks in which something changes.
+//! The undisturbed run: the line of the job in each tick, the world at the end of each line, and the changes.
 
 use std::collections::HashSet;
 
@@ -28,8 +27,7 @@ pub enum Ticks {
 }
 
 pub struct Parent {
-    /// First tick of each line; line 0 is the first PAUSE.
-    begun: Vec<Tick>,
+    begun: Vec<Tick>, // first tick of each line; line 0 is the first PAUSE
     worlds: Vec<World>,
     changes: Vec<u64>,
     states: Vec<u64>,
@@ -37,8 +35,7 @@ pub struct Parent {
     pub digest: String,
 }
 
-/// Steps and command numbers of all processes, without the command number of the T3 interface: Prim sends it one
-/// command per trajectory point, so that the number changes in every tick of a motion.
+/// Steps and command numbers of all processes, without T3 Interface, which gets one command per point.
 type Steps = Vec<(Option<Name16>, Option<u32>)>;
 
 fn steps(memory: &CommonMemory, task: u32) -> Steps {
@@ -58,17 +55,13 @@ pub fn state(memory: &CommonMemory) -> Vec<(Option<Name16>, Option<Decided>)> {
     ProcessId::ALL.iter().map(of).collect()
 }
 
-/// The workstation controller's emulator with a job, before its first tick.
 #[must_use]
 pub fn emulator(facility: &Facility) -> Hwsc {
     Hwsc::new(facility.job.steps.clone(), TIME_LIMIT)
 }
 
 impl Parent {
-    /// Run the job to its end.
-    ///
-    /// # Errors
-    /// [`Error`] if the undisturbed job does not finish.
+    /// Run the job to its end. Fails with [`Error`] if the undisturbed job does not finish.
     pub fn run(facility: &Facility) -> Result<Self, Error> {
         let mut branch = Branch::start(facility)?;
         let mut hwsc = emulator(facility);

@@ -1,12 +1,8 @@
 //! Removes the past that the control processes no longer act on from a copy of their state.
 //!
-//! Two states that differ in nothing else continue alike, except for these values:
-//!
-//! - the numbers of commands and pose records: they are only compared with each other, so they are renumbered from the
-//!   newest one;
-//! - the rows in the headers, and the counters of the line: no process acts on them;
-//! - expired times: of an echoed command, of an old RESTART, of a table at rest;
-//! - readings of a completed calibration: the next one takes them again.
+//! Two states that differ only in these values continue alike: numbers of commands and pose records, which are only
+//! compared with each other (renumbered from the newest); rows in headers and counters of the line; expired times;
+//! readings of a completed calibration.
 
 use std::collections::BTreeSet;
 
@@ -23,7 +19,6 @@ use levels::{
 };
 use rcs_core::{Plain as _, handshake::Commander, header::Header, tick::Tick};
 
-/// Remove the past from common memory and state after tick `now`.
 pub fn forget(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick) {
     count_poses(memory, ladder);
     count_commands(memory, ladder, now);
@@ -83,8 +78,7 @@ fn count_commands(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick
     }
 }
 
-/// The number that the newest command gets; 0 means none.
-const NEWEST: u32 = 1000;
+const NEWEST: u32 = 1000; // the number that the newest command gets; 0 means none
 
 /// Number a commander's commands. The send time of the last one matters until it is echoed everywhere.
 fn settle(commander: &mut Commander, numbers: [&mut u32; 3], now: Tick) {

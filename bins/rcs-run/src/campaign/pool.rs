@@ -19,21 +19,16 @@ use crate::rcs_run::error::Error;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Tick after which the job is forked.
     pub at: u64,
     pub series: Series,
     /// How the branch is recovered and judged.
     pub procedure: Procedure,
 }
 
-/// A forked state, and the index of the plan that begins with it.
 type Work<'f> = (Arc<Branch<'f>>, usize);
 
-/// Run a branch for each plan, up to a known state. Calls `done` with each new result and its coverage. The
-/// return values of `done` are in the order of the plans, which does not depend on `threads`.
-///
-/// # Errors
-/// [`Error`] if the run cannot be forked, and the errors of `done`.
+/// Run a branch for each plan, up to a known state. Calls `done` with each new result and its coverage. The return
+/// values of `done` are in the order of the plans, for any number of `threads`.
 pub fn run<T: Send>(
     facility: &Facility,
     parent: &Parent,
@@ -118,10 +113,7 @@ fn fork_all<'f>(
     Ok(())
 }
 
-/// The state after one tick of the undisturbed job.
-///
-/// # Errors
-/// [`Error`] if the run cannot be forked.
+/// The state after one tick of the undisturbed job. Fails with [`Error`] if the run cannot be forked.
 pub fn fork_at(facility: &Facility, tick: u64) -> Result<Branch<'_>, Error> {
     let mut branch = Branch::start(facility)?;
     let mut hwsc = emulator(facility);

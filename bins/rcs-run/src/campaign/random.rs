@@ -1,8 +1,7 @@
 //! Branches drawn at random, and the smallest series of interruptions with the same outcome as a drawn one.
 //!
-//! Branches are drawn in rounds. From the second round on, about half of them are variations of earlier ones,
-//! preferably of those with most new rows and states. A draw depends on its seed and on the coverage of the
-//! branches of earlier rounds, but not on the order in which they end.
+//! Branches are drawn in rounds. From the second round on, about half are variations of earlier ones, preferably of
+//! those with most new rows and states. A draw depends on its seed and the coverage of earlier rounds.
 
 use std::collections::HashSet;
 
@@ -18,18 +17,14 @@ use super::{
     trial::{Procedure, Until},
 };
 
-/// Upper limits of the ticks between two interruptions, one of which is drawn: at once, within a step, within a
-/// command.
+/// Upper limits of the ticks between two interruptions: at once, within a step, within a command.
 const BETWEEN: [u64; 3] = [3, 60, 600];
 const ROUND: usize = 64;
-/// Weight of a new row, in new states.
-const ROW: usize = 20;
+const ROW: usize = 20; // weight of a new row, in new states
 /// Greatest weight of a branch, since the first ones are the first to reach everything.
 const MOST: usize = 5 * ROW;
-/// A changed branch begins this many ticks sooner or later, at most.
-const NEAR: u64 = 12;
-/// Number of repeated draws if a branch was drawn before.
-const AGAIN: usize = 8;
+const NEAR: u64 = 12; // a changed branch begins this many ticks sooner or later, at most
+const AGAIN: usize = 8; // number of repeated draws if a branch was drawn before
 
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
@@ -45,19 +40,17 @@ pub struct Draw {
     random: ChaCha8Rng,
     last: u64,
     changes: Vec<u64>,
-    /// The kinds that are drawn, and the stops that follow if the branches are judged at rest. Kinds with the
-    /// same word form a group.
+    /// The kinds that are drawn, grouped by word, and the stops that follow if the branches are judged at rest.
     kinds: Vec<Vec<Kind>>,
     stops: Vec<Vec<Kind>>,
     drawn: HashSet<(u64, String)>,
     met: Coverage,
-    /// Branches with new coverage, and its weight.
-    fruitful: Vec<(Plan, usize)>,
+    fruitful: Vec<(Plan, usize)>, // branches with new coverage, and its weight
 }
 
 impl Draw {
-    /// A draw of these kinds. Half of the branches begin in ticks in which something changes. A branch that is judged
-    /// at rest gets a stop after its drawn interruptions.
+    /// Half of the branches begin in ticks in which something changes. One that is judged at rest gets a stop at its
+    /// end.
     #[must_use]
     pub fn new(parent: &Parent, kinds: &[Kind], procedure: Procedure, settings: Settings) -> Self {
         let rest = procedure.until == Until::Rest;
@@ -94,7 +87,6 @@ impl Draw {
         }
     }
 
-    /// Draw a branch that was not drawn before, if there is one.
     fn next(&mut self) -> Option<Plan> {
         let mut plan = self.draw()?;
         for _ in 0..AGAIN {
@@ -158,7 +150,6 @@ impl Draw {
     }
 }
 
-/// Identifies a branch.
 fn key(plan: &Plan) -> (u64, String) {
     (plan.at, plan.series.to_string())
 }
@@ -172,11 +163,7 @@ fn kind(groups: &[Vec<Kind>], random: &mut ChaCha8Rng) -> Option<Kind> {
     groups.choose(random)?.choose(random).cloned()
 }
 
-/// The smallest series for which `is_same` holds, found by leaving out interruptions and shortening the time
-/// between them.
-///
-/// # Errors
-/// The errors of `is_same`.
+/// The smallest series for which `is_same` holds, without unneeded interruptions and with shorter times between.
 pub fn smallest<E>(
     series: &Series,
     mut is_same: impl FnMut(&Series) -> Result<bool, E>,

@@ -22,8 +22,7 @@ const LISTED: usize = 3;
 struct Row {
     interruption: String,
     branches: usize,
-    /// Branches that were interrupted while Task executed no command.
-    without_command: usize,
+    without_command: usize, // branches that were interrupted while Task executed no command
     done: usize,
     stranded: usize,
     apart: usize,
@@ -49,7 +48,6 @@ impl Row {
         }
     }
 
-    /// Number of branches that are done, and the verdicts of the others.
     fn cell(&self) -> String {
         let mut text = format!("{}/{}", self.done, self.branches);
         for (count, word) in
@@ -95,8 +93,7 @@ pub struct CampaignReport<'a> {
     parent: &'a Parent,
     results: &'a [BranchResult],
     rows: Vec<Row>,
-    /// Number of rows of the decision tables, and the rows that have fired in no branch.
-    decisions: usize,
+    decisions: usize, // number of rows of the decision tables, and the rows that have fired in no branch
     never_fired: Vec<String>,
     command: String,
 }
@@ -108,8 +105,7 @@ struct Json<'a> {
     digest: &'a str,
     rows: &'a [Row],
     branches: &'a [BranchResult],
-    /// Number of rows of the decision tables, and the rows that have fired in no branch.
-    decisions: usize,
+    decisions: usize, // number of rows of the decision tables, and the rows that have fired in no branch
     never_fired: &'a [String],
 }
 
@@ -136,10 +132,7 @@ impl<'a> CampaignReport<'a> {
         Self { job, parent, results, rows, decisions, never_fired, command }
     }
 
-    /// The report as one JSON object.
-    ///
-    /// # Errors
-    /// [`Error::Output`] if it cannot be written.
+    /// The report as one JSON object. Fails with [`Error::Output`] if it cannot be written.
     pub fn json(&self) -> Result<String, Error> {
         let Parent { ticks, digest, .. } = self.parent;
         let Self { job, results: branches, rows, decisions, never_fired, .. } = self;
@@ -192,7 +185,6 @@ impl<'a> CampaignReport<'a> {
         text
     }
 
-    /// The verdicts of the judge in all branches.
     fn confirmations(&self, text: &mut String) {
         let untrue = || self.results.iter().flat_map(|result| &result.untrue);
         let judged: u64 = self.results.iter().map(|result| result.judged).sum();

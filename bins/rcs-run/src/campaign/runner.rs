@@ -44,10 +44,6 @@ pub struct Runner<'a> {
 }
 
 impl<'a> Runner<'a> {
-    /// A runner for a number of branches.
-    ///
-    /// # Errors
-    /// [`Error`] if the journal cannot be read.
     pub fn new(
         arguments: &CampaignArguments,
         facility: &'a Facility,
@@ -66,9 +62,6 @@ impl<'a> Runner<'a> {
     }
 
     /// Run the branches that the journal does not contain, and return all of them in order.
-    ///
-    /// # Errors
-    /// [`Error`] if the undisturbed run cannot be forked, or the journal cannot be written.
     pub fn run(&self, plans: &[Plan], keep: Keep) -> Result<Vec<Judged>, Error> {
         let known: Vec<Option<Judged>> = plans.iter().map(|plan| self.journal.known(plan).cloned()).collect();
         let missing = plans.iter().zip(&known).filter(|(_, known)| known.is_none());
@@ -90,10 +83,7 @@ impl<'a> Runner<'a> {
         Ok(known.into_iter().filter_map(|known| known.or_else(|| run.next())).collect())
     }
 
-    /// Draw and run branches, in rounds.
-    ///
-    /// # Errors
-    /// See [`Self::run`].
+    /// Draw and run branches, in rounds. Errors: see [`Self::run`].
     pub fn draw(&self, mut draw: Draw) -> Result<(Vec<Plan>, Vec<Judged>), Error> {
         let (mut plans, mut judged) = (Vec::new(), Vec::new());
         loop {
@@ -110,7 +100,6 @@ impl<'a> Runner<'a> {
         }
     }
 
-    /// Merge the coverage of a branch, and show it. Returns the new part.
     fn learn(&self, met: Coverage) -> Coverage {
         let mut all = self.met.lock().unwrap_or_else(PoisonError::into_inner);
         let new = all.take_in(met);
@@ -122,7 +111,6 @@ impl<'a> Runner<'a> {
         new
     }
 
-    /// Report a hurt branch at once.
     fn warn(&self, result: &BranchResult) {
         if let (Some(bar), Verdict::Hurt) = (&self.bar, result.verdict) {
             let line = format!("hurt: {} at {}: {}", result.interruption, result.at, result.detail);

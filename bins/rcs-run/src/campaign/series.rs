@@ -14,7 +14,6 @@ pub struct Interruption {
     pub kind: Kind,
 }
 
-/// The interruptions of a branch, at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series(Vec<Interruption>);
 
@@ -38,7 +37,6 @@ impl fmt::Display for Series {
 }
 
 impl Series {
-    /// A series of these interruptions; `None` if the list is empty.
     #[must_use]
     pub fn of(mut interruptions: Vec<Interruption>) -> Option<Self> {
         interruptions.first_mut()?.after = 0;
@@ -75,9 +73,6 @@ impl Series {
     }
 
     /// The series that a word of the command line selects: one per combination of the kinds of its parts.
-    ///
-    /// # Errors
-    /// [`Error::Campaign`] for an unknown kind, or for ticks that are not a number.
     pub fn named(text: &str, data: &Path, cell: &CellDescription) -> Result<Vec<Self>, Error> {
         let mut parts = text.split('+');
         let first = parts.next().unwrap_or_default();

@@ -9,7 +9,6 @@ use rcs_core::tick::Tick;
 
 use super::{branch::Branch, trial::Observer, verdict::BranchResult};
 
-/// The state of a process that the story prints.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Said {
     command: String,
@@ -28,7 +27,6 @@ pub struct Story {
 }
 
 impl Story {
-    /// The story of a branch that is interrupted after tick `at`.
     #[must_use]
     pub fn new(at: u64, around: u64) -> Self {
         Self { text: String::new(), at, around, last: Vec::new() }

@@ -113,7 +113,6 @@ fn fork_continues_bit_for_bit_like_its_parent() {
     }
 }
 
-/// An undisturbed move of the empty robot.
 fn empty_move() -> (Facility, Parent) {
     let facility = with_job("== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n");
     let parent = Parent::run(&facility).expect("the job finishes");
@@ -212,7 +211,6 @@ fn monitor_reports_world_contradicting_a_finished_command() {
 }
 
 /// The arm jumps when the pressure returns, and the clevis slides in the fingers, which no sensor shows.
-/// REFIXTURE does not grasp it again.
 #[test]
 fn slide_without_commanded_point_is_counted_apart() {
     let facility = facility("clevis");
@@ -224,7 +222,6 @@ fn slide_without_commanded_point_is_counted_apart() {
     assert!(result.ended.iter().any(|ended| ended.contains("REFIXTURE") && ended.ends_with("finished")));
 }
 
-/// A plan for each interruption after every `step`-th tick.
 fn plans(facility: &Facility, parent: &Parent, texts: &[&str], step: u64) -> Vec<Plan> {
     let of_text = |text: &&str| {
         let series = series(facility, text);

@@ -29,8 +29,7 @@ use super::{
 };
 use crate::rcs_run::error::Error;
 
-/// A location that is not in the task data.
-const MISSPELT: &str = "NOWHERRE";
+const MISSPELT: &str = "NOWHERRE"; // a location that is not in the task data
 
 /// When a branch is judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -43,7 +42,6 @@ pub enum Until {
     Rest,
 }
 
-/// The recovery of a branch, and the time of its judgement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Procedure {
     pub recovery: Recovery,
@@ -71,41 +69,28 @@ struct Trial<'f, 'p> {
     monitor: HarmMonitor,
     invariants: Invariants,
     series: &'p Series,
-    /// Index of the present or last interruption.
-    interruption: usize,
-    /// Tick in which the present or last interruption ended.
-    over: Option<Tick>,
+    interruption: usize, // index of the present or last interruption
+    over: Option<Tick>,  // tick in which the present or last interruption ended
     /// True while the job is played: the interrupted command continues, or the operator recovers it.
     following: bool,
     until: Until,
     begun_at: Tick,
     line: usize,
-    /// The line at whose end the branch is judged.
-    goal: usize,
-    /// The commands that have ended, with their ticks.
-    ended: Vec<(Tick, String)>,
-    /// The states in which it was compared with others.
-    path: Vec<Passed>,
+    goal: usize,                // the line at whose end the branch is judged
+    ended: Vec<(Tick, String)>, // the commands that have ended, with their ticks
+    path: Vec<Passed>,          // the states in which it was compared with others
     mismatch: Option<(String, String)>,
-    /// True if the operator has moved the robot away with a part that the vise also holds.
-    tears: bool,
-    /// Motion since the last interruption, if the branch is judged at rest.
-    motion: Option<Motion>,
-    /// The confirmations since the fork that are not true.
-    untrue: Vec<Confirmation>,
-    /// Number of confirmations that were judged before the fork.
-    judged_before: u64,
+    tears: bool, // true if the operator has moved the robot away with a part that the vise also holds
+    motion: Option<Motion>, // motion since the last interruption, if the branch is judged at rest
+    untrue: Vec<Confirmation>, // the confirmations since the fork that are not true
+    judged_before: u64, // number of confirmations that were judged before the fork
     /// Number of confirmations judged after the known state in which the branch has ended.
     judged_behind: u64,
-    /// True if the remedy was applied and the disturbance undone.
-    remedied: bool,
+    remedied: bool, // true if the remedy was applied and the disturbance undone
 }
 
-/// Interrupt a fork after its last tick, and judge the branch. It stops at a known state; if it is done, its
-/// states become known.
-///
-/// # Errors
-/// [`Error`] if the branch cannot be made from the fork, or its cell cannot be saved.
+/// Interrupt a fork after its last tick, and judge the branch. It stops at a known state; if it is done, its states
+/// become known.
 pub fn run(
     facility: &Facility,
     parent: &Parent,
@@ -253,8 +238,7 @@ impl Trial<'_, '_> {
         self.operator.pause(at);
     }
 
-    /// True if a person causes the contacts of this tick: at the joystick box, or by putting parts where the
-    /// controller expects none.
+    /// True if a person causes the contacts of this tick, at the joystick box or by placing parts.
     fn is_of_a_person(&self, over: bool) -> bool {
         match self.kind() {
             Kind::Nudge | Kind::Away => !over,
@@ -263,8 +247,7 @@ impl Trial<'_, '_> {
         }
     }
 
-    /// The remedy of a command that has failed because of a disturbance. It is used once, in a branch that runs
-    /// to the end of the job.
+    /// The remedy of a command that failed because of a disturbance, once, in a branch that runs to the end.
     fn remedy(&mut self, script: &Script) -> Option<Script> {
         let what = &self.kind().disturbance()?.what;
         if self.remedied || self.until != Until::Job || self.operator.stranded().is_none() {
@@ -275,8 +258,7 @@ impl Trial<'_, '_> {
         Some(remedy)
     }
 
-    /// True if the branch depends only on its state and the operator's, so that the state may be a known one. A
-    /// branch without interruption shows that a fork continues like the ordinary run, and runs to its end.
+    /// True if the state may be a known one. A branch without interruption runs to its end.
     fn is_comparable(&self) -> bool {
         let was_interrupted = *self.kind() != Kind::None && self.next().is_none();
         let goes_on = self.following && self.motion.is_none();
@@ -287,14 +269,12 @@ impl Trial<'_, '_> {
         Known::compares(self.branch.at()) && was_interrupted && goes_on && harmless && self.invariants.hold()
     }
 
-    /// Digest of the state, with that of the operator and the line at whose end the branch is judged.
     fn state(&mut self) -> Result<Digest, Error> {
         self.branch.forget_past_faults();
         let operator = self.operator.state(self.branch.at(), self.branch.closed.command().number);
         self.branch.state(&(operator, self.goal))
     }
 
-    /// The end of a branch that was in the same state.
     fn known_end(&mut self, known: &Known) -> Result<Option<Arc<End>>, Error> {
         let (tick, state) = (self.branch.at(), self.state()?);
         self.path.push(Passed { tick, state, judged: self.judged() });
@@ -308,7 +288,6 @@ impl Trial<'_, '_> {
         Ok(Some(end))
     }
 
-    /// The end of the branch: the present tick.
     fn end(&mut self) -> Result<End, Error> {
         Ok(End { until: self.branch.at(), state: self.state()?, ended: self.ended.clone() })
     }
@@ -348,20 +327,17 @@ impl Trial<'_, '_> {
         };
         // A delay that differs between branches, but not between runs.
         self.operator.interrupt((kind == Kind::PauseTwice).then_some(1 + at.0 * 37 % 120));
-        // No command follows a stop.
         self.following = kind.leaves_command() && self.motion.is_none();
         self.send(&kind, observer);
         kind.script()
     }
 
-    /// True if the operator moves the robot away while both fingers and vise hold a part. No sensor shows the
-    /// part in the vise to the controller.
+    /// True if the operator moves the robot away while both fingers and vise hold a part.
     fn takes_from_vise(&self) -> bool {
         self.operator.has_replaced()
             && self.branch.closed.workstation.cell.parts().iter().any(|part| part.held && part.clamped)
     }
 
-    /// Send the command of an interruption.
     fn send(&mut self, kind: &Kind, observer: &mut impl Observer) {
         let at = self.branch.at();
         let current = self.operator.command_at(self.operator.current());
@@ -381,7 +357,6 @@ impl Trial<'_, '_> {
     }
 }
 
-/// The command MOVE to a location with an empty hand.
 fn go(location: &str) -> HwsCommand {
     HwsCommand {
         command: Name16::clipped("MOVE"),

@@ -1,10 +1,7 @@
 //! Branches of a campaign of confirmations: a person disturbs the cell at a drawn tick, and the judge of
-//! [`closed_loop::truth`] then checks every report of a finished command.
-//!
-//! A draw depends only on its seed, the job and the cell. In half of the branches a person moves the robot
-//! aside, by 0.05 to 6 in in any direction; in the others a person moves, exchanges, adds or removes a part.
-//! One in [`WHOLE`] runs to the end of the job: if a command is refused there, the person undoes the
-//! disturbance, and the job must finish.
+//! [`closed_loop::truth`] checks every report of a finished command. In half of the branches a person moves the robot
+//! aside, by 0.05 to 6 in; in the others a part is changed. One in [`WHOLE`] runs to the end of the job: if a command
+//! is refused there, the person undoes the disturbance, and the job must finish.
 
 use std::collections::BTreeSet;
 
@@ -26,21 +23,15 @@ use super::{
 pub const WHOLE: usize = 10;
 /// Least and greatest distance by which the joystick moves the robot aside, in.
 const JOG: [f64; 2] = [0.05, 6.0];
-/// Least and greatest distance by which a part is moved, in.
-const MOVED: [f64; 2] = [0.05, 4.0];
-/// Number of parts of the cell that may be chosen, from the first.
-const PARTS: usize = 4;
-/// Percentage of the branches in which the previous command follows, and of the other branches on one command
-/// in which the next one does.
+const MOVED: [f64; 2] = [0.05, 4.0]; // least and greatest distance by which a part is moved, in
+const PARTS: usize = 4; // number of parts of the cell that may be chosen, from the first
+/// Percentage of the branches in which the previous command follows, and of the others in which the next one does.
 const AGAIN: u32 = 33;
 const NEXT: u32 = 33;
-/// Percentage of the parts and places that are those of the job.
-const OF_JOB: u32 = 75;
+const OF_JOB: u32 = 75; // percentage of the parts and places that are those of the job
 
-/// Parts and places from which a draw chooses.
 struct Choice {
-    /// Kinds of parts of the job, and all of the cell.
-    kinds: [Vec<String>; 2],
+    kinds: [Vec<String>; 2], // kinds of parts of the job, and all of the cell
     /// Places of parts: kind, location, sector; those of the job, and all of the cell.
     places: [Vec<(String, String, u16)>; 2],
 }
@@ -95,7 +86,6 @@ impl Draw {
         self.random.random_range(0..100_u32) < share
     }
 
-    /// A length between two limits; all orders of magnitude are equally frequent.
     fn length(&mut self, [least, greatest]: [f64; 2]) -> f64 {
         let share = self.random.random_range(0.0..1.0);
         least * (greatest / least).powf(share)
@@ -107,7 +97,6 @@ impl Draw {
             let way: [f64; 3] = core::array::from_fn(|_| self.random.random_range(-1.0..1.0));
             let norm = way.iter().map(|one| one * one).sum::<f64>().sqrt();
             if (0.1..=1.0).contains(&norm) {
-                // Lengths of some inches fit.
                 return way.map(|one| (one / norm * length * 100.0).round() as i32);
             }
         }

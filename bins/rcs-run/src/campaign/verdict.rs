@@ -7,14 +7,11 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     Done,
-    /// The job did not continue, for the given reason.
     Stranded,
-    /// An arm without pressure, its alignment, its own travel to HOME or a person has touched something, or let a part
-    /// slide in the fingers.
+    /// An arm without pressure or a person has touched something, or let a part slide in the fingers.
     Apart,
     /// A commanded point has done damage, or a finished command has not had its effect.
     Hurt,
-    /// A command is reported as finished, but the cell does not correspond to its goal.
     False,
 }
 
@@ -32,7 +29,6 @@ pub struct BranchResult {
     pub reason: String,
     /// The reason with numbers, the tick in which it began, and the process that reported it.
     pub detail: String,
-    /// The line of the job that was interrupted.
     pub line: String,
     /// True if that line is a command.
     pub met_command: bool,
@@ -44,10 +40,8 @@ pub struct BranchResult {
     /// Ticks from the interruption to the last motion, if the branch is judged at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest_after: Option<u64>,
-    /// The false confirmations.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub untrue: Vec<Confirmation>,
-    /// Number of confirmations that were judged.
     #[serde(default)]
     pub judged: u64,
     /// True if a command failed, a person undid the disturbance, and the job continued.

@@ -6,7 +6,6 @@ use taskdata::load::source::read_blocks_under;
 
 use super::{Checked, Flights, data::copy};
 
-/// The printed findings of a data directory, without the counts.
 fn said(data: &Path) -> String {
     let checked = Checked::of(data, &Flights::default());
     let reports = checked.reports.iter().map(|(_, report)| report.to_string());

@@ -1,7 +1,6 @@
-//! Wrong variants of the shipped data (variants.toml), and the findings of `rcs-run check` for each
-//! (variants.txt). Each variant is refused before the robot moves, or has a reason why it is harmless.
-//!
-//! `RCS_VARIANTS=write cargo test --release -p programs --lib variants` writes variants.txt again.
+//! Wrong variants of the shipped data (variants.toml), and the findings of `rcs-run check` for each (variants.txt),
+//! which `RCS_VARIANTS=write cargo test --release -p programs --lib variants` writes. Each variant is refused before
+//! the robot moves, or has a reason why it is harmless.
 
 use std::{
     fmt::Write as _,
@@ -24,20 +23,16 @@ struct Table {
     variant: Vec<Variant>,
 }
 
-/// One small edit of one file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Variant {
     group: String,
     name: String,
     file: String,
-    /// The edit replaces the first occurrence of this text by `to`.
-    from: Option<String>,
+    from: Option<String>, // the edit replaces the first occurrence of this text by `to`
     to: Option<String>,
-    /// A change of the whole file.
-    edit: Option<Edit>,
-    /// The reason why `check` may accept the variant.
-    harmless: Option<String>,
+    edit: Option<Edit>,       // a change of the whole file
+    harmless: Option<String>, // the reason why `check` may accept the variant
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -75,7 +70,6 @@ impl Variant {
     }
 }
 
-/// The findings of `check` in a data directory.
 fn findings(data: &Path, flights: &Flights) -> Vec<Finding> {
     let outcome = Checked::of(data, flights).outcome();
     assert_eq!(outcome.ok, outcome.findings.iter().all(|finding| finding.severity != "error"));

@@ -30,17 +30,12 @@ use crate::rcs_run::{
 struct Explanation {
     command: String,
     from: String,
-    /// `endeff-id#` of the object; `None` if any gripper will do.
-    gripper: Option<i32>,
+    gripper: Option<i32>, // `endeff-id#` of the object; `None` if any gripper will do
     phases: Vec<Phase>,
-    /// Time of the motion alone, s.
-    motion_s: f64,
+    motion_s: f64, // time of the motion alone, s
 }
 
 /// Explain a command of [`CheckArguments`]. Exit status 2 if a path is missing.
-///
-/// # Errors
-/// If the command, the start or the task data cannot be read.
 pub fn explain(arguments: &CheckArguments, text: &str) -> Result<ExitCode, Error> {
     let (store, _) = Store::load_with_faults(&arguments.data);
     let what = format!("the command {text}");

@@ -1,12 +1,9 @@
-//! The dump: one line per frame, with time and direction.
-//!
-//! A frame arrives in pieces; a pause separates frames.
+//! The dump: one line per frame, with time and direction. A pause separates frames.
 
 use std::time::{Duration, Instant};
 
 use depc::wire::{Control, FRAME_BYTES, Response, START};
 
-/// Direction of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     Sent,
@@ -16,8 +13,7 @@ pub enum Way {
 /// Prints the bytes of the line, if the dump is on.
 pub struct Dump {
     on: bool,
-    /// True if standard output is used for the JSON object.
-    on_stderr: bool,
+    on_stderr: bool, // true if standard output is used for the JSON object
     begun: Instant,
     /// Received bytes that are not printed yet, with the times of the first and the last of them.
     pending: Vec<u8>,
@@ -29,14 +25,12 @@ pub struct Dump {
 const PAUSE: Duration = Duration::from_millis(5);
 
 impl Dump {
-    /// A dump whose time begins now.
     #[must_use]
     pub fn new(on: bool, json: bool) -> Self {
         let now = Instant::now();
         Self { on, on_stderr: json, begun: now, pending: Vec::new(), first: now, last: now }
     }
 
-    /// Print bytes that passed at `now`.
     pub fn show(&mut self, now: Instant, way: Way, bytes: &[u8]) {
         if !self.on || bytes.is_empty() {
             return;
@@ -56,7 +50,6 @@ impl Dump {
         self.pending.extend(bytes);
     }
 
-    /// Print the pending bytes.
     pub fn flush(&mut self) {
         if !self.pending.is_empty() {
             self.print(self.first, Way::Received, &self.pending);
@@ -74,8 +67,7 @@ impl Dump {
     }
 }
 
-/// `   1.234567 > 03 00 ...  data`: seconds, direction (`>` to the robot), bytes, and their meaning as far as the bytes
-/// alone determine it.
+/// `   1.234567 > 03 00 ...  data`: seconds, direction (`>` to the robot), bytes, and their meaning as far as known.
 fn line(seconds: f64, way: Way, bytes: &[u8]) -> String {
     let arrow = match way {
         Way::Sent => '>',

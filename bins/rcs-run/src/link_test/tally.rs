@@ -8,15 +8,11 @@ use os_io::text::amount;
 use rcs_core::tick::TICK_MS;
 use serde::Serialize;
 
-/// Longest latency of an ACK that is in time.
-const IN_TIME: Duration = Duration::from_millis(TICK_MS);
-/// Least share of frames acknowledged in time for `good`.
-const GOOD: f64 = 0.95;
-/// Least share for `usable`.
-const USABLE: f64 = 0.90;
-/// Largest share of frames without an answer for `good`. Each such frame costs a restart, and 10 restarts in 10
-/// s lose the link (docs/design/link.md "Recovery"). At this share, 1.25 of 250 frames are lost on average, and
-/// 10 in one run of 250 in a million.
+const IN_TIME: Duration = Duration::from_millis(TICK_MS); // longest latency of an ACK that is in time
+const GOOD: f64 = 0.95; // least share of frames acknowledged in time for `good`
+const USABLE: f64 = 0.90; // least share for `usable`
+/// Largest share of frames without an answer for `good`. 10 restarts in 10 s lose the link (docs/design/link.md
+/// "Recovery"); at this share, that happens in one run of 250 frames in a million.
 const LOST_GOOD: f64 = 0.005;
 /// Largest share for `usable`: 10 of 250 frames are lost in one run of 5000.
 const LOST_USABLE: f64 = 0.01;
@@ -81,9 +77,7 @@ impl Latency {
 #[derive(Clone, Debug, Serialize)]
 pub struct Tally {
     pub port: String,
-    /// True if the port has modem lines: host and robot see each other's DTR.
     pub modem_lines: bool,
-    /// True if the link was up at the end.
     pub connected: bool,
     /// Number of starts of the link, that is of accepted reports.
     pub starts: u32,
@@ -107,19 +101,14 @@ pub struct Tally {
     pub verdict: Verdict,
 }
 
-/// Observations of a link in addition to the counters.
 #[derive(Clone, Copy, Debug)]
 pub struct Observed {
-    /// True if the port has modem lines.
     pub modem_lines: bool,
-    /// True if the link is up at the end.
     pub connected: bool,
-    /// Number of starts of the link.
     pub starts: u32,
 }
 
 impl Tally {
-    /// Combine the observations, the counters of both ends of the program, and the latencies of all ACKs.
     #[must_use]
     pub fn new(
         settings: &SerialSettings,

@@ -12,10 +12,8 @@ use taskdata::load::{Source, source::BLOCK_LINES, source::blocks};
 
 use crate::rcs_run::error::Error;
 
-/// Unchanged lines that the diff shows around a change.
-const AROUND: usize = 2;
+const AROUND: usize = 2; // unchanged lines that the diff shows around a change
 
-/// Changed files by their path in the data directory.
 #[derive(Clone)]
 pub struct Change {
     data: PathBuf,
@@ -35,9 +33,6 @@ impl Change {
     }
 
     /// The text of a file, to be changed; `file` is its path in the data directory.
-    ///
-    /// # Errors
-    /// [`Error::New`] if it cannot be read.
     pub fn text(&mut self, file: &str) -> Result<&mut String, Error> {
         if !self.files.contains_key(file) {
             let path = self.data.join(file);
@@ -48,10 +43,6 @@ impl Change {
         Ok(&mut self.files.entry(file.to_owned()).or_insert_with(Texts::empty).after)
     }
 
-    /// Add a new file.
-    ///
-    /// # Errors
-    /// [`Error::New`] if the file exists.
     pub fn add(&mut self, file: &str, text: String) -> Result<(), Error> {
         if fs::symlink_metadata(self.data.join(file)).is_ok() || files::is_file(&self.data.join(file)) {
             let path = self.data.join(file);
@@ -61,10 +52,7 @@ impl Change {
         Ok(())
     }
 
-    /// Insert a line after the last line of a block.
-    ///
-    /// # Errors
-    /// [`Error::New`] if the block is full or missing.
+    /// Insert a line after the last line of a block. Fails with [`Error::New`] if the block is full or missing.
     pub fn add_to_block(&mut self, file: &str, block: u32, line: &str) -> Result<(), Error> {
         let text = self.text(file)?;
         let source = Source { name: file.to_owned(), text: text.as_str().into() };
@@ -83,9 +71,6 @@ impl Change {
     }
 
     /// Add a member, a location point, to an owner (VII.5).
-    ///
-    /// # Errors
-    /// [`Error::New`] if the owner has no form in the file.
     pub fn add_member(&mut self, file: &str, owner: &str, member: &str) -> Result<(), Error> {
         let text = self.text(file)?;
         let mut lines: Vec<&str> = text.lines().collect();
@@ -100,11 +85,7 @@ impl Change {
         Ok(())
     }
 
-    /// Insert a table after the last table of kind `kind` that contains the entry `behind`, such as `name = "SHAFT"`;
-    /// an empty `behind` matches every table.
-    ///
-    /// # Errors
-    /// [`Error::New`] if no such table begins in a line of its own.
+    /// Insert a table after the last table of kind `kind` that contains the entry `behind`; empty matches every table.
     pub fn add_table(&mut self, file: &str, kind: &str, behind: &str, table: &str) -> Result<(), Error> {
         let text = self.text(file)?;
         let mut lines: Vec<&str> = text.lines().collect();
@@ -133,9 +114,6 @@ impl Change {
     }
 
     /// Write the whole data directory with the changes into another directory.
-    ///
-    /// # Errors
-    /// [`Error`] if a file cannot be read or written.
     pub fn copy_to(&self, directory: &Path) -> Result<(), Error> {
         let mut open = vec![self.data.clone()];
         while let Some(folder) = open.pop() {
@@ -152,10 +130,6 @@ impl Change {
         self.files.iter().try_for_each(|(file, texts)| put(&directory.join(file), &texts.after))
     }
 
-    /// Write the changed files.
-    ///
-    /// # Errors
-    /// [`Error::Write`] if a file cannot be written.
     pub fn write(&self) -> Result<(), Error> {
         self.files.iter().try_for_each(|(file, texts)| put(&self.data.join(file), &texts.after))
     }
@@ -167,10 +141,7 @@ impl Texts {
     }
 }
 
-/// Check whether the files of a data directory can be changed.
-///
-/// # Errors
-/// [`Error::New`] if the data are those built into the program.
+/// Check whether the files of a data directory can be changed: not the data built into the program.
 pub fn changeable(data: &Path) -> Result<(), Error> {
     let why = "the data are those in the program: `rcs-run init .` writes a copy that can be changed";
     data.is_dir().then_some(()).ok_or_else(|| Error::New(why.to_owned()))

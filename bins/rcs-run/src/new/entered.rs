@@ -8,7 +8,6 @@ pub struct Entered {
     blocks: Vec<Loads>,
 }
 
-/// A block, its file, and the blocks that it loads.
 struct Loads {
     file: String,
     block: BlockNumber,
@@ -55,7 +54,6 @@ impl Entered {
         })
     }
 
-    /// The directory block that loads a block, with its file.
     pub fn directory(&self, block: BlockNumber) -> Option<(&str, BlockNumber)> {
         let loads = self.blocks.iter().find(|loads| loads.named.contains(&block))?;
         Some((&loads.file, loads.block))

@@ -30,10 +30,7 @@ pub struct Family {
 
 impl Family {
     /// The family of a part: the parts in the job with the fewest parts that contains it. A tool has no other family
-    /// members.
-    ///
-    /// # Errors
-    /// [`Error::New`] if the part or a job with it does not exist, or its parts' names have no common beginning.
+    /// members. The names need a common beginning.
     pub fn of(like: &str, store: &Store, cell: &CellDescription, data: &Path) -> Result<Self, Error> {
         let Some(part) = cell.part(like) else {
             let known = cell.part.iter().map(|part| part.name.as_str());
@@ -62,8 +59,7 @@ impl Family {
         Ok(Self { parts, stem, others, job: job.source().clone(), program, entered: Entered::of(store) })
     }
 
-    /// The part of the family to which an object belongs, as the part itself or as its hold or seat pose: index, and
-    /// true for the part itself.
+    /// The part to which an object belongs (index), and true for the part itself instead of its hold or seat pose.
     pub fn part_of(&self, object: &Name16) -> Option<(usize, bool)> {
         let at = |name: &str| self.parts.iter().position(|part| part.name == name);
         let name = object.as_str();
@@ -77,7 +73,6 @@ impl Family {
         self.entered.all().filter(move |entry| belongs(entry))
     }
 
-    /// The grips of the family's objects.
     pub fn grips(&self) -> impl Iterator<Item = &GripEntry> {
         self.entries().filter_map(|entry| match entry {
             Entry::Grip(grip) => Some(grip),
@@ -99,15 +94,11 @@ impl Family {
         })
     }
 
-    /// The name of a part or an object, with another beginning.
     pub fn renamed(&self, name: &str, stem: &str) -> String {
         name.replacen(&self.stem, stem, 1)
     }
 
     /// The directory block that loads the family's forms: its file and number.
-    ///
-    /// # Errors
-    /// [`Error::New`] if no directory loads the family's own directory block.
     pub fn directory(&self) -> Result<(&str, BlockNumber), Error> {
         let is_first = |entry: &Entry| match entry {
             Entry::Object(object) => self.part_of(&object.name.name).is_some_and(|(_, own)| own),
@@ -155,7 +146,6 @@ fn parts(job: &Job, cell: &CellDescription) -> Vec<PartType> {
     parts
 }
 
-/// The program with which a job opens the vise.
 fn program(job: &Job, cell: &CellDescription) -> Option<ViseProgram> {
     let used = job.steps.iter().filter_map(|line| match &line.step {
         Step::Workstation(Workstation::Vise { program, .. }) => Some(program.as_ref()),

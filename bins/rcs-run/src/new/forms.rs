@@ -2,8 +2,7 @@
 
 use taskdata::load::{entries::Entry, print, source::BLOCK_LINES};
 
-/// Load commands per line of a directory block.
-const LOADS_A_LINE: usize = 2;
+const LOADS_A_LINE: usize = 2; // load commands per line of a directory block
 
 /// Blocks of forms, and the directory block that loads them, which comes first.
 pub struct Blocks {
@@ -34,7 +33,6 @@ impl Blocks {
         }
     }
 
-    /// Number of blocks, including the directory block.
     pub fn count(&self) -> u32 {
         u32::try_from(self.blocks.len() + 1).unwrap_or(u32::MAX)
     }
@@ -59,7 +57,6 @@ impl Blocks {
     }
 }
 
-/// Align the words of one-line forms in columns.
 fn align(forms: &mut [Vec<String>]) {
     let alone = forms.iter().all(|form| form.len() == 1);
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();

@@ -1,9 +1,8 @@
 //! Chooses the step of the vise for a new part: an existing step, or a new step in the jaws.
 //!
-//! A step is a notch in both jaws, from the front to its back and down to its ledge, as deep as its clamping face. A
-//! part fits if it is stable before it is pushed to the back, projects far enough in front to be pushed, and is wider
-//! than the remaining gap between the ledges. A new step is deeper than all others and ends above their ledges, so that
-//! it does not cut their ledges and leaves the lower part of each clamping face.
+//! A step is a notch in both jaws, from the front to its back and down to its ledge. A part fits if it is stable before
+//! it is pushed to the back, projects far enough to be pushed, and is wider than the gap between the ledges. A new step
+//! is deeper than all others and ends above their ledges.
 
 use plant::description::{Vise, ViseProgram};
 
@@ -11,20 +10,13 @@ use plant::description::{Vise, ViseProgram};
 const PUSHED: f64 = 0.05;
 /// Distance of the middle of a part behind the front edge of its ledge, before it is pushed, in.
 const STANDS: f64 = 0.03;
-/// Least distance of a part from the back where it is released, in.
-const NEAREST: f64 = 0.02;
-/// Rounding error of the cell description, in.
-const ROUNDING: f64 = 1e-6;
-/// Least gap of the jaws when they close on a part, in.
-const CLOSED: f64 = 0.05;
-/// Least height of a part above the jaws for the fingers, in.
-pub const GRIPPED: f64 = 0.50;
-/// Least width of a part on each ledge, in.
-pub const LEDGE: f64 = 0.04;
-/// Least width of a ledge, in.
-const STRIP: f64 = 0.02;
-/// Geometry of a new step: depth beyond the deepest step, in; height of its ledge as a share of the height to the top;
-/// and greatest height of the ledge, in.
+const NEAREST: f64 = 0.02; // least distance of a part from the back where it is released, in
+const ROUNDING: f64 = 1e-6; // rounding error of the cell description, in
+const CLOSED: f64 = 0.05; // least gap of the jaws when they close on a part, in
+pub const GRIPPED: f64 = 0.50; // least height of a part above the jaws for the fingers, in
+pub const LEDGE: f64 = 0.04; // least width of a part on each ledge, in
+const STRIP: f64 = 0.02; // least width of a ledge, in
+/// Geometry of a new step: depth beyond the deepest step, in; height of its ledge as a share; its greatest height, in.
 const DEEPER: f64 = 0.10;
 const HIGHER: f64 = 0.6;
 const LOWEST: f64 = -0.30;
@@ -53,18 +45,13 @@ pub struct Wanted {
     pub stands_in_open: bool,
 }
 
-/// A step that fits.
 pub struct Chosen {
     pub program: ViseProgram,
     pub is_new: bool,
-    /// Distance before the back where the part is released, in.
-    pub behind: f64,
+    pub behind: f64, // distance before the back where the part is released, in
 }
 
-/// The first step that fits: that of the like part, another step, or a new one.
-///
-/// # Errors
-/// The reasons why no step fits, one line per step.
+/// The first step that fits: that of the like part, another step, or a new one. Errors: one line per step.
 pub fn choose(vise: &Vise, like: &ViseProgram, name: &str, wanted: &Wanted) -> Result<Chosen, Vec<String>> {
     let others = vise.program.iter().filter(|other| other.name != like.name);
     let mut reasons: Vec<String> = Vec::new();
@@ -87,10 +74,7 @@ pub fn choose(vise: &Vise, like: &ViseProgram, name: &str, wanted: &Wanted) -> R
 }
 
 impl Wanted {
-    /// The range for the back of a step whose ledge begins at `front`.
-    ///
-    /// # Errors
-    /// A message if no back fits.
+    /// The range for the back of a step whose ledge begins at `front`. Errors: a message if no back fits.
     fn backs(&self, front: f64) -> Result<[f64; 2], String> {
         let least = front + STANDS + NEAREST.min(self.behind) + self.height / 2.0;
         let most = self.pushed.map_or(self.height, |height| height - PUSHED);
@@ -154,7 +138,6 @@ impl Wanted {
         Ok((program, behind))
     }
 
-    /// A new step in the jaws.
     fn cut(&self, vise: &Vise, like: &ViseProgram) -> Result<ViseProgram, String> {
         let highest = vise.program.iter().map(|step| step.ledge).fold(f64::NEG_INFINITY, f64::max);
         let deepest = vise.program.iter().map(|step| step.depth).fold(0.0, f64::max);
@@ -178,8 +161,7 @@ impl Wanted {
     }
 }
 
-/// Start of a step's ledge, from the front, at the depth where lower and deeper steps leave most of it. `None`
-/// if they leave nothing.
+/// Start of a step's ledge, from the front, in the depth that lower and deeper steps leave, if any.
 fn front(vise: &Vise, step: &ViseProgram) -> Option<f64> {
     let lower: Vec<_> = vise.program.iter().filter(|other| other.ledge < step.ledge).collect();
     let carries = step.depth - LEDGE;
@@ -197,12 +179,10 @@ fn front(vise: &Vise, step: &ViseProgram) -> Option<f64> {
     begins.min_by(f64::total_cmp)
 }
 
-/// Rounded to a thousandth of an inch.
 fn rounded(inches: f64) -> f64 {
     (inches * 1000.0).round() / 1000.0
 }
 
-/// Rounded to a hundredth of an inch.
 fn hundredth(inches: f64) -> f64 {
     (inches * 100.0).round() / 100.0
 }

@@ -1,5 +1,4 @@
-//! `rcs-run new`: derives data for something new from existing data, tries them, shows a diff, and writes them on
-//! request.
+//! `rcs-run new`: derives data from existing data, tries them, shows a diff, and writes them on request.
 
 mod arguments;
 mod change;
@@ -36,10 +35,7 @@ use self::{
 };
 use crate::rcs_run::{arguments::CheckArguments, error::Error, pose, ways};
 
-/// Make new data.
-///
-/// # Errors
-/// [`Error`] with the reason. No file was written.
+/// Make new data. Fails with [`Error`] with the reason. No file was written.
 pub fn new(arguments: &NewArguments) -> Result<ExitCode, Error> {
     match &arguments.what {
         What::Part(arguments) => {
@@ -93,7 +89,6 @@ fn part(order: &Order<'_>, (write, explain_job): (bool, bool), data: &Path) -> R
     finish(&made.change, lines, write.then_some(next))
 }
 
-/// `new place`.
 fn place(arguments: &PlaceArguments) -> Result<ExitCode, Error> {
     let PlaceArguments { name, point, azimuth, tilt, roll, like, write, data } = arguments;
     let store = loaded(data, *write)?;
@@ -110,7 +105,6 @@ fn place(arguments: &PlaceArguments) -> Result<ExitCode, Error> {
     finish(&change, lines, write.then_some(next))
 }
 
-/// `new tray`.
 fn tray(arguments: &TrayArguments) -> Result<ExitCode, Error> {
     let TrayArguments { name, centre, like, write, data } = arguments;
     let store = loaded(data, *write)?;

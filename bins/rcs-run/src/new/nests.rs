@@ -1,8 +1,5 @@
-//! Parts that lie in nests (cylinders and tools): the resting place of a part of another size in the nests of
-//! the like part, and the displacement of its grips.
-//!
-//! A grip keeps its position relative to the middle of the part. Grips at a nest move with the middle of the
-//! part; other grips stay. A part that does not rest like the like part does not fit its nests.
+//! Parts that lie in nests (cylinders and tools). A grip keeps its position relative to the middle of the part; grips
+//! at a nest move with it. A part that does not rest like the like part does not fit its nests.
 
 use geometry::{
     frame::{Frame, Vector},
@@ -31,8 +28,7 @@ use super::{
 };
 use crate::rcs_run::error::Error;
 
-/// Height above its nest from which a part is lowered, in.
-const ABOVE: f64 = 3.0;
+const ABOVE: f64 = 3.0; // height above its nest from which a part is lowered, in
 /// Greatest difference between the resting heights of the part's lower side and of the like part's, in.
 const SAME: f64 = 0.10;
 
@@ -40,16 +36,12 @@ pub struct Nested<'a> {
     family: &'a Family,
     store: &'a Store,
     parts: Vec<PartType>,
-    /// The like part's nests, with the vector from the middle of the like blank to that of the new one, world
-    /// coordinates, in.
+    /// The like part's nests, with the vector from the middle of the like blank to that of the new one, world, in.
     nests: Vec<(Nest, Vector)>,
 }
 
 impl<'a> Nested<'a> {
-    /// Compute where a blank of a size (along its axes, in) lies.
-    ///
-    /// # Errors
-    /// [`Error::New`] with the reason if it does not fit the nests or the fingers.
+    /// Compute where a blank of a size (along its axes, in) lies, if it fits the nests and the fingers.
     pub fn new(
         (store, cell): (&'a Store, &CellDescription),
         family: &'a Family,
@@ -165,7 +157,6 @@ fn fingers_reach(room: &Room, family: &Family, part: &PartType) -> Result<(), St
     })
 }
 
-/// Name of a nest's place for messages.
 fn place(nest: &Nest) -> String {
     let sector = if nest.sector == 0 { String::new() } else { format!(" sector {}", nest.sector) };
     format!("{}{sector}", nest.location)

@@ -13,9 +13,6 @@ pub trait Numbers {
     fn parts(&self) -> &[PartType];
 
     /// The places of the new grips that replace a grip, and the lines of their movetables.
-    ///
-    /// # Errors
-    /// [`Error::New`] if the grip is at an unsupported place.
     fn grips(&self, grip: &GripEntry) -> Result<Vec<(Typed, Vec<MovetableLine>)>, Error>;
 
     /// Approach and grasp openings, force and depart opening of an object, in 0.01 in and lb.
@@ -32,15 +29,11 @@ pub trait Numbers {
     }
 
     /// Add the vise's program or the nests to the cell description.
-    ///
-    /// # Errors
-    /// [`Error::New`] if the cell description has no table after which the new tables can be inserted.
     fn places(&self, change: &mut Change) -> Result<Places, Error>;
 }
 
 pub struct Places {
     pub chosen: Vec<(&'static str, String)>,
     pub to_teach: Vec<String>,
-    /// True if other parts must be tried, too.
-    pub others: bool,
+    pub others: bool, // true if other parts must be tried, too
 }

@@ -27,8 +27,7 @@ use crate::rcs_run::error::Error;
 
 /// Longest name of a part: `S-` and `_BH` are added to it, and an object has 16 characters.
 const LONGEST: usize = 11;
-/// Number of the name's characters with which its movetables begin.
-const BEGINS: usize = 6;
+const BEGINS: usize = 6; // number of the name's characters with which its movetables begin
 
 pub struct Order<'a> {
     pub name: &'a str,
@@ -40,15 +39,13 @@ pub struct Order<'a> {
     pub weight: Option<f64>,
 }
 
-/// The changes for a new part, and the remaining manual work.
 pub struct Made {
     pub change: Change,
     /// The changes, with additional jobs for the trial only.
     pub trial: Change,
     /// The job that moves the part, and the additional ones.
     pub jobs: Vec<String>,
-    /// True if jobs of other parts are tried, too.
-    pub others: bool,
+    pub others: bool, // true if jobs of other parts are tried, too
     pub size: Size,
     /// The choices made: pairs of subject and text.
     pub chosen: Vec<(&'static str, String)>,
@@ -56,10 +53,6 @@ pub struct Made {
     pub to_teach: Vec<String>,
 }
 
-/// Make the data of a part or a tool.
-///
-/// # Errors
-/// [`Error::New`] with the reason if such a part is not possible.
 pub fn make(
     order: &Order<'_>,
     (store, cell, data): (&Store, &CellDescription, &Path),
@@ -251,8 +244,7 @@ impl New<'_> {
         Ok((tables, grips))
     }
 
-    /// The job of the like part with the new names. Its comments, which describe the like part, are removed.
-    /// The new parts replace `like` and its family.
+    /// The job of the like part with the new names, without its comments.
     fn job(&self, like: &str) -> String {
         let mut text = format!("% {}, made like {} by rcs-run new.\n\n", self.name, self.family.stem);
         let mut opened = false;
@@ -277,7 +269,6 @@ impl New<'_> {
     }
 }
 
-/// The table of a part in the cell description.
 fn table_of_part(part: &PartType, id: u16) -> String {
     let [x, y, z] = part.size;
     let shape = match part.shape {

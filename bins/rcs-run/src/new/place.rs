@@ -16,15 +16,9 @@ use taskdata::{
 use super::{change::Change, entered::Entered, forms::Blocks};
 use crate::rcs_run::error::Error;
 
-/// Longest name: `-P` is added to it in a name of 10 characters.
-const LONGEST: usize = 8;
-/// Number of the name's characters with which its trajectories begin.
-const BEGINS: usize = 6;
+const LONGEST: usize = 8; // longest name: `-P` is added to it in a name of 10 characters
+const BEGINS: usize = 6; // number of the name's characters with which its trajectories begin
 
-/// Make the data of a place.
-///
-/// # Errors
-/// [`Error::New`] with the reason if such a place is not possible.
 pub fn make(name: &str, frame: &Frame, like: &str, store: &Store, data: &Path) -> Result<Change, Error> {
     let entered = Entered::of(store);
     is_name(name, store)?;
@@ -43,9 +37,6 @@ pub fn make(name: &str, frame: &Frame, like: &str, store: &Store, data: &Path) -
 }
 
 /// Add a file with the blocks of a place, and its load command to the directory block that loads the like place.
-///
-/// # Errors
-/// [`Error::New`] if the area is full, the file exists, or the directory block has no room.
 pub fn with_blocks(
     name: &str,
     blocks: &Blocks,
@@ -62,10 +53,6 @@ pub fn with_blocks(
     Ok(change)
 }
 
-/// Check the name of a new place.
-///
-/// # Errors
-/// [`Error::New`] if the name is invalid or exists.
 pub fn is_name(name: &str, store: &Store) -> Result<(), Error> {
     let fits = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_';
     if name.is_empty() || name.len() > LONGEST || !name.chars().all(fits) {
@@ -98,19 +85,16 @@ pub fn clipped(name: &str) -> Named<10> {
     Named { name: Name10::clipped(name), at: At::default() }
 }
 
-/// A new place, and the existing place from which it is derived.
 pub struct New<'a> {
     pub name: Named<10>,
     pub like: &'a str,
 }
 
 impl New<'_> {
-    /// True if a location is the like place.
     pub fn is_like(&self, end: &Typed) -> bool {
         end.kind == RefType::LocationPoint && end.name.name.as_str() == self.like
     }
 
-    /// Replace the name of the like place by that of the new place.
     pub fn rename(&self, end: &mut Typed) {
         if self.is_like(end) {
             end.name.name = Name::clipped(self.name.name.as_str());

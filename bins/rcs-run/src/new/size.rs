@@ -1,5 +1,4 @@
-//! The size of a blank as text, in the units of the command line: three sides of a box, or length and diameter
-//! of a cylinder.
+//! The size of a blank as text: three sides of a box, or length and diameter of a cylinder.
 
 use std::{fmt, str::FromStr};
 
@@ -7,8 +6,7 @@ use crate::pages::length;
 use os_io::units;
 use plant::description::{PartType, Shape};
 
-/// Greatest side of a part, in.
-const GREATEST: f64 = 20.0;
+const GREATEST: f64 = 20.0; // greatest side of a part, in
 
 /// The size of a blank, in.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,9 +47,6 @@ impl FromStr for Size {
 
 impl Size {
     /// Lengths of the sides along the axes of a part with the shape of `part`, in.
-    ///
-    /// # Errors
-    /// A message with the expected form.
     pub fn like(&self, part: &PartType) -> Result<[f64; 3], String> {
         match (*self, part.shape) {
             (Self::Box { length, width, height }, Shape::Box) => Ok([height, width, length]),

@@ -1,9 +1,6 @@
-//! Computes the numbers of a family whose parts have other sizes: the place of each grip, and the openings and forces
-//! of the fingers.
-//!
-//! A grip moves with the face to which it refers: in a tray with the floor, in the vise with back, ledge and
-//! fixed face of the step, for a push with the front face, at the pedestal with the middle of the part. This
-//! keeps the clearances of the like part.
+//! Computes the numbers of a family whose parts have other sizes. A grip moves with the face to which it refers: in a
+//! tray with the floor, in the vise with back, ledge and fixed face, for a push with the front face, at the pedestal
+//! with the middle of the part. This keeps the clearances of the like part.
 
 use plant::{
     CellDescription,
@@ -31,14 +28,10 @@ use crate::rcs_run::error::Error;
 
 /// Largest share of a low part's height that fingers cover; the rest keeps them off the floor.
 const REACH: f64 = 2.0 / 3.0;
-/// Clearance of the fingers above jaws and hands, in.
-const CLEAR: f64 = 0.25;
-/// Least clearance of an open gripper around a part, both sides together, in.
-pub const ROOM: f64 = 0.5;
-/// Safety factor of the grasp force over the force that weight and lever require.
-const SAFE: f64 = 3.0;
-/// Millimetres in an inch.
-const MM: f64 = 25.4;
+const CLEAR: f64 = 0.25; // clearance of the fingers above jaws and hands, in
+pub const ROOM: f64 = 0.5; // least clearance of an open gripper around a part, both sides together, in
+const SAFE: f64 = 3.0; // safety factor of the grasp force over the force that weight and lever require
+const MM: f64 = 25.4; // millimetres in an inch
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
@@ -47,29 +40,21 @@ enum Place {
     Pedestal,
 }
 
-/// A family, and the new family.
 pub struct Sizes<'a> {
     cell: &'a CellDescription,
     family: &'a Family,
     pub parts: Vec<PartType>,
-    /// The step of the like part, and that of the new part.
-    before: ViseProgram,
+    before: ViseProgram, // the step of the like part, and that of the new part
     pub step: Chosen,
-    /// Height of the fingertips above the floor, in: like part and new part.
-    tips: [f64; 2],
+    tips: [f64; 2], // height of the fingertips above the floor, in: like part and new part
     /// Height of the tool point above the lower end of a vertical part, in: like part and new part.
     height: [f64; 2],
-    /// Distance before the back where the like part is released, in.
-    behind: f64,
-    /// Grasp force, lb, if that of the like part is too small.
-    force: f64,
+    behind: f64, // distance before the back where the like part is released, in
+    force: f64,  // grasp force, lb, if that of the like part is too small
 }
 
 impl<'a> Sizes<'a> {
     /// Compute the numbers for a blank of a size (height, width, length, in).
-    ///
-    /// # Errors
-    /// [`Error::New`] with the reason if such parts cannot be handled.
     pub fn new(
         cell: &'a CellDescription,
         family: &'a Family,
@@ -154,7 +139,6 @@ impl<'a> Sizes<'a> {
         })
     }
 
-    /// Check that the fingers are long enough, and open wide enough.
     fn is_reached(&self) -> Result<(), String> {
         let Gripper { fingers, opening, .. } = &self.cell.gripper.parts;
         let [height, width, _] = self.parts.first().map_or([0.0; 3], |part| part.size);
@@ -184,10 +168,7 @@ impl<'a> Sizes<'a> {
         self.parts.iter().map(of).fold(0.0, f64::max)
     }
 
-    /// The lines of the movetable of a grip.
-    ///
-    /// # Errors
-    /// [`Error::New`] if the grip is at an unsupported place.
+    /// The lines of the movetable of a grip. Fails with [`Error::New`] if the grip is at an unsupported place.
     pub fn moved(&self, grip: &GripEntry) -> Result<Vec<MovetableLine>, Error> {
         let (name, table) = (&grip.object.name, grip.movetable.name);
         let unknown = |what: String| Error::New(format!("the grip of {name} cannot be made: {what}"));
@@ -272,7 +253,6 @@ impl Numbers for Sizes<'_> {
         [room(appr), grasp + hundredths(wider), force, room(release), table, flip]
     }
 
-    /// The range to the top of the part, mm.
     fn range(&self, object: &Name16, range: i32) -> i32 {
         let at = self.family.part_of(object).map(|(part, _)| part);
         let height = |parts: &[PartType]| at.and_then(|at| parts.get(at)).map_or(0.0, |part| part.size[0]);
@@ -306,12 +286,9 @@ struct Rules<'a> {
 }
 
 struct Like {
-    /// Distance before the back where the blank is released, in.
-    behind: f64,
-    /// Height of the tool point above the lower end of a seated part, in.
-    height: f64,
-    /// Length of the lower end in the pedestal's hand, in.
-    in_hand: Option<f64>,
+    behind: f64,          // distance before the back where the blank is released, in
+    height: f64,          // height of the tool point above the lower end of a seated part, in
+    in_hand: Option<f64>, // length of the lower end in the pedestal's hand, in
 }
 
 impl Rules<'_> {
@@ -383,7 +360,6 @@ fn whole(number: f64) -> i32 {
     number.round() as i32
 }
 
-/// A program of the vise in the cell description.
 fn table_of_program(program: &ViseProgram) -> String {
     let ViseProgram { name, back, depth, ledge, opening_open, opening_partial } = program;
     format!(

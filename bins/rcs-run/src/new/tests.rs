@@ -28,7 +28,6 @@ fn made(name: &str, size: &str, like: &str) -> Result<Made, Error> {
     make(&Order { name, like, tool, size, weight: None }, (&store, &cell, &data()))
 }
 
-/// Make a new part, check it and run it.
 fn tried(name: &str, size: &str, like: &str) -> Result<usize, Error> {
     let made = made(name, size, like)?;
     let trial = Trial::checked(&made.trial, name)?;
@@ -143,7 +142,7 @@ fn tray_at_another_point_passes_its_trial() {
 }
 
 #[test]
-fn what_cannot_be_says_why() {
+fn impossible_request_is_refused_with_the_reason() {
     assert!(refused("LINKBAR1", "4x1x1", "LINKBAR1").contains("choose another name, such as LINKBAR12"));
     assert!(refused("hinge", "4x1x1", "LINKBAR1").contains("capital letters"));
     assert!(refused("NEW", "4x1x1", "LINKBAR3").contains("the nearest is LINKBAR1"));

@@ -20,7 +20,6 @@ use super::{
 };
 use crate::rcs_run::error::Error;
 
-/// The changes for a new tray, and a job that tries it.
 pub struct Made {
     pub change: Change,
     /// The changes, and a job of the like tray in which the new tray replaces it.
@@ -29,9 +28,6 @@ pub struct Made {
 }
 
 /// Make the data of a tray whose centre is at a point, in.
-///
-/// # Errors
-/// [`Error::New`] with the reason if such a tray is not possible.
 pub fn make(
     name: &str,
     centre: [f64; 2],
@@ -90,7 +86,6 @@ fn unknown(like: &str, cell: &CellDescription) -> Error {
     Error::New(format!("no tray is named {like}: {}", alternatives(like, known, "the cell has")))
 }
 
-/// Check that no other tray is at the point.
 fn stands_alone([x, y]: [f64; 2], cell: &CellDescription) -> Result<(), Error> {
     let side = cell.tray_shape.inside + 2.0 * cell.tray_shape.wall;
     let other = cell.tray.iter().find(|other| {
@@ -106,7 +101,6 @@ fn stands_alone([x, y]: [f64; 2], cell: &CellDescription) -> Result<(), Error> {
     })
 }
 
-/// The pose of the tray's corner, displaced.
 fn corner(new: &New<'_>, pose: &PoseEntry, [dx, dy]: [f64; 2]) -> Entry {
     let hundredths = |inches: f64| (inches * 100.0).round() as i32;
     let (dx, dy) = (hundredths(dx), hundredths(dy));
@@ -114,7 +108,6 @@ fn corner(new: &New<'_>, pose: &PoseEntry, [dx, dy]: [f64; 2]) -> Entry {
     Entry::Pose(PoseEntry { points, name: new.pose_name(), ..pose.clone() })
 }
 
-/// The owners that contain the arrays of the tray.
 fn owners(new: &New<'_>, entered: &Entered) -> Vec<Entry> {
     let own = entered.all().filter_map(|entry| match entry {
         Entry::Owner(owner) if owner.name.name.as_str() == new.like => Some(owner.clone()),
@@ -146,7 +139,6 @@ fn at_the_tray(new: &New<'_>, entry: &Entry) -> Option<Entry> {
     Some(entry)
 }
 
-/// The table of the tray in the cell description.
 fn table(name: &str, like: &Tray, [dx, dy]: [f64; 2]) -> String {
     let thousandth = |inches: f64| (inches * 1000.0).round() / 1000.0;
     let moved = |[x, y]: [f64; 2]| format!("[{:?}, {:?}]", thousandth(x + dx), thousandth(y + dy));

@@ -9,12 +9,9 @@ use tempfile::TempDir;
 use super::change::Change;
 use crate::rcs_run::{check, error::Error};
 
-/// Seeds for the runs of a new job.
-const SEEDS: [u64; 3] = [1, 2, 3];
-/// Number of simultaneous runs.
-const AT_A_TIME: usize = 2;
+const SEEDS: [u64; 3] = [1, 2, 3]; // seeds for the runs of a new job
+const AT_A_TIME: usize = 2; // number of simultaneous runs
 
-/// A copy of the data directory with the change.
 pub struct Trial {
     place: TempDir,
     pub warnings: Vec<String>,
@@ -22,9 +19,6 @@ pub struct Trial {
 
 impl Trial {
     /// Copy and check the data. Only warnings that contain `name` are returned.
-    ///
-    /// # Errors
-    /// [`Error::New`] with every error that the check finds.
     pub fn checked(change: &Change, name: &str) -> Result<Self, Error> {
         let place = tempfile::tempdir()?;
         change.copy_to(place.path())?;
@@ -44,9 +38,6 @@ impl Trial {
     }
 
     /// Run the new job with several seeds and, if `others`, every other job once. Returns the number of finished runs.
-    ///
-    /// # Errors
-    /// [`Error::New`] with the first run that did not finish.
     pub fn run(&self, job: &str, others: bool) -> Result<usize, Error> {
         let mut wanted: Vec<(String, u64)> = SEEDS.map(|seed| (job.to_owned(), seed)).into();
         let all = JOBS.all(self.data()).into_iter().filter(|_| others);

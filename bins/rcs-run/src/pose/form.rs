@@ -6,7 +6,6 @@ use taskdata::load::{
     source::{BLOCK_LINES, blocks},
 };
 
-/// A text after the insertion of a form.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Changed {
     pub text: String,
@@ -47,9 +46,6 @@ impl Kind {
 }
 
 /// Insert a form: in place of the form of that name, or after the last line of the block.
-///
-/// # Errors
-/// A message if the text has no block of that number, or if the block has no room.
 pub fn put(
     text: &str,
     block: Option<u32>,

@@ -1,6 +1,5 @@
 use std::{fs, path::Path};
 
-/// Copy a directory recursively.
 pub fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).unwrap();
     for entry in fs::read_dir(from).unwrap().flatten() {

@@ -11,7 +11,6 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The program with arguments, in that directory, without standard input.
 pub fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-run"));
     command.args(arguments).current_dir(root()).stdin(Stdio::null());

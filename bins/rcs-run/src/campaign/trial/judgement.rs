@@ -68,7 +68,6 @@ impl Trial<'_, '_> {
 
     /// Compare the world with that of the undisturbed run when a command finishes.
     fn compare(&mut self, line: usize, command: &str) {
-        // A person has changed the world.
         if self.kind().disturbance().is_some() {
             return;
         }
@@ -90,7 +89,6 @@ impl Trial<'_, '_> {
         }
     }
 
-    /// The report of a branch with this verdict.
     pub(super) fn result(self, verdict: Verdict, end: &End, doing: Vec<String>) -> BranchResult {
         let (reason, detail) = self.why(verdict);
         let judged = self.judged();
@@ -128,7 +126,6 @@ impl Trial<'_, '_> {
         }
     }
 
-    /// The reason and the detail of a verdict.
     fn why(&self, verdict: Verdict) -> (String, String) {
         match verdict {
             Verdict::Done => (String::new(), String::new()),
@@ -169,7 +166,6 @@ impl Trial<'_, '_> {
     }
 }
 
-/// A sentence without its numbers, by which it can be counted.
 fn general(text: &str) -> String {
     let number = |word: &str| word.parse::<f64>().is_ok() && word.contains('.');
     text.split(' ').map(|word| if number(word) { "some" } else { word }).collect::<Vec<_>>().join(" ")
