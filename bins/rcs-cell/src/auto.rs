@@ -1,8 +1,6 @@
-//! The automatic operator of `--auto`: performs the start-up by itself, so that a link can be tested without a person.
-//!
-//! It presses the keys of IV.3.3 one after the other, up to the DEPC function. After that it answers ENTER to the
-//! warnings that a host can cause (WD1 once a host is connected, WD3, WD4), and restarts the program after a cancel.
-//! When a person presses a key, the operator stops for good, so that it never undoes a person's emergency stop.
+//! The automatic operator of `--auto`: presses the keys of IV.3.3 up to the DEPC function, so that a link can be tested
+//! without a person. Then it answers the warnings that a host can cause (WD1, WD3, WD4), and restarts the program after
+//! a cancel. It stops for good when a person presses a key.
 
 use depc::controller::{ControllerState, Warning};
 use plant::{
@@ -27,7 +25,7 @@ impl Operator {
         std::mem::replace(&mut self.on_duty, false)
     }
 
-    /// The next key to press, `None` if there is none. `cts` is true if a host has the line open.
+    /// The next key to press, if any. `cts` is true if a host has the line open.
     #[must_use]
     pub fn next(&self, t3: &T3Controller, cts: bool) -> Option<Key> {
         if !self.on_duty {
@@ -62,7 +60,6 @@ mod tests {
         T3Controller::dark(Limits::NBS, &Actuators::default(), 5)
     }
 
-    /// Runs for `seconds` and presses the operator's keys; returns the keys.
     fn run(t3: &mut T3Controller, operator: &Operator, seconds: f64, host: bool) -> Vec<Key> {
         let mut keys = Vec::new();
         for _ in 0..(seconds / 0.04) as u32 {
@@ -77,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn it_starts_up_once_and_answers_when_a_host_comes() {
+    fn automatic_operator_starts_up_once_and_answers_warnings() {
         let (mut t3, operator) = (t3(), Operator::new(true));
         let keys = run(&mut t3, &operator, 30.0, false);
         let order = [
@@ -99,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn the_box_keeps_the_settings_of_a_person() {
+    fn automatic_operator_keeps_a_persons_settings() {
         let (mut t3, mut operator) = (t3(), Operator::new(true));
         run(&mut t3, &operator, 30.0, true);
         assert!(operator.step_back() && !operator.step_back());

@@ -16,8 +16,7 @@ pub enum ConsoleCommand {
     Quit,
 }
 
-/// Longest wait, seconds.
-const LONGEST_WAIT_S: f64 = 3600.0;
+const LONGEST_WAIT_S: f64 = 3600.0; // seconds
 
 /// Help text with all commands, in the order of the start-up.
 pub const HELP: &str = "\
@@ -84,8 +83,7 @@ impl FromStr for ConsoleCommand {
     }
 }
 
-/// Largest jog of one axis from the pendant, degrees.
-const LONGEST_JOG: i8 = 20;
+const LONGEST_JOG: i8 = 20; // largest jog of one axis from the pendant, degrees
 
 fn jog(axis: &str, degrees: &str) -> Result<Key, String> {
     let axis = axis.parse().ok().filter(|axis| (1..=6).contains(axis));
@@ -133,8 +131,7 @@ pub struct Lines {
     bytes: Vec<u8>,
 }
 
-/// Longest line that is kept, bytes.
-const LONGEST_LINE: usize = 256;
+const LONGEST_LINE: usize = 256; // bytes
 
 impl Lines {
     /// Takes `bytes` and returns the lines that they complete, without empty lines and `#` comments.
@@ -212,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_cut_wherever_the_bytes_are() {
+    fn lines_are_assembled_from_any_pieces() {
         let mut lines = Lines::default();
         assert!(lines.accept(b"sta").is_empty());
         assert_eq!(lines.accept(b"tus\r\n\n# no\nquit\nhe"), ["status", "quit"]);

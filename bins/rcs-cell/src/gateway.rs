@@ -1,7 +1,7 @@
 //! `--egm [ADDRESS:]PORT[,OPTION...]`: a gateway that connects any DEPC host to an EGM robot.
 //!
-//! One side is the pseudo-terminal of `--link`, the other the UDP port; between them runs the DEPC function of
-//! [`executive::egm::Bridge`]. The host sees a T3 controller whose program begins when the robot follows.
+//! Between the pseudo-terminal of `--link` and the UDP port runs the DEPC function of [`executive::egm::Bridge`]. The
+//! host sees a T3 controller whose program begins when the robot follows.
 
 use std::{
     io,
@@ -19,8 +19,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::{host_line::HostLine, line::Cadence, pty::Pty, shell::ShellError};
 
-/// Longest sleep, us: the program notices a signal within this time.
-const LONGEST_SLEEP: u64 = 20_000;
+const LONGEST_SLEEP: u64 = 20_000; // longest sleep, us: the program notices a signal within this time
 
 pub struct Gateway {
     start: Instant,
@@ -28,15 +27,11 @@ pub struct Gateway {
     cadence: Cadence,
     robot: Line,
     bridge: Bridge,
-    /// State of the robot reported last on standard output.
-    said: Option<&'static str>,
+    said: Option<&'static str>, // state of the robot reported last on standard output
 }
 
 impl Gateway {
-    /// Listens for the robot.
-    ///
-    /// # Errors
-    /// A sentence for messages if the port or the robot's file cannot be used.
+    /// Listens for the robot. Errors: a sentence for messages if the port or the robot's file cannot be used.
     pub fn new(
         options: &EgmOptions,
         data: &std::path::Path,
@@ -61,10 +56,6 @@ impl Gateway {
         })
     }
 
-    /// Runs until a signal.
-    ///
-    /// # Errors
-    /// [`ShellError`] if the pseudo-terminal or waiting fails.
     pub fn run(&mut self, stop: &Arc<AtomicBool>) -> Result<(), ShellError> {
         while !stop.load(Ordering::Relaxed) {
             self.host.poll(self.now())?;

@@ -1,4 +1,4 @@
-//! A pseudo-terminal with a simulated serial line behind it: what a DEPC host connects to.
+//! The port for a DEPC host: a pseudo-terminal with a simulated serial line.
 
 use std::os::fd::BorrowedFd;
 
@@ -10,8 +10,7 @@ use crate::{
     pty::{Pty, PtyError},
 };
 
-/// Baud rate of the link (VI.1).
-const BAUD: u32 = 9600;
+const BAUD: u32 = 9600; // baud rate of the link (VI.1)
 
 /// The line to a host. Times are us of one monotonic clock.
 pub struct HostLine {
@@ -21,7 +20,6 @@ pub struct HostLine {
 }
 
 impl HostLine {
-    /// A line without a host.
     #[must_use]
     pub fn new(pty: Pty) -> Self {
         stdout_line!("[link] {} waits for a host", pty.slave().display());
@@ -39,17 +37,14 @@ impl HostLine {
         &self.line
     }
 
-    /// The file descriptor to wait for; `None` without a host, because the master then signals a hang-up all the time,
-    /// and `None` if the line has no room for more bytes.
+    /// The file descriptor to wait for; `None` without a host, which signals a hang-up, and without room for more
+    /// bytes.
     #[must_use]
     pub fn readable(&self) -> Option<BorrowedFd<'_>> {
         (self.host && self.line.room() > 0).then(|| self.pty.fd())
     }
 
     /// Checks whether a host has opened or closed the terminal, and reads its bytes.
-    ///
-    /// # Errors
-    /// [`PtyError`] if the pseudo-terminal fails.
     pub fn poll(&mut self, now: u64) -> Result<(), PtyError> {
         let host = self.pty.has_host();
         if host != self.host {
@@ -78,9 +73,6 @@ impl HostLine {
     }
 
     /// Writes the bytes that have passed the line by `now`, us, to the terminal.
-    ///
-    /// # Errors
-    /// [`PtyError`] if the pseudo-terminal fails.
     pub fn deliver(&mut self, now: u64) -> Result<(), PtyError> {
         while let Some(byte) = self.line.delivered(now) {
             self.pty.write(byte)?;

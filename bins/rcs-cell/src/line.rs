@@ -1,7 +1,5 @@
-//! A simulated serial line: a pseudo-terminal passes bytes at once, but a serial line passes them one after the other.
-//!
-//! Bytes arrive one byte time apart in both directions. All times are us of one monotonic clock; this module reads no
-//! clock.
+//! A simulated serial line: bytes arrive one byte time apart. All times are us of one monotonic clock, which this
+//! module does not read.
 
 use std::collections::VecDeque;
 
@@ -10,12 +8,9 @@ use interfaces::device::LinkBytes;
 
 /// Capacity of the line, bytes; if a host sends more, the pseudo-terminal fills up.
 const MOST_WAITING: usize = 1024;
-/// Bits per byte: start, eight data, stop.
-const BITS: u64 = 10;
-/// A burst of bytes is over after a gap of this many byte times (ASSUMED).
-const PAUSE_BYTES: u64 = 2;
-/// Longest delay of a step for a frame that is just arriving, byte times.
-const PATIENCE_BYTES: u64 = 20;
+const BITS: u64 = 10; // bits per byte: start, eight data, stop
+const PAUSE_BYTES: u64 = 2; // a burst of bytes is over after a gap of this many byte times (ASSUMED)
+const PATIENCE_BYTES: u64 = 20; // longest delay of a step for a frame that is just arriving, byte times
 
 /// Both directions of the line: arrival time in us, and byte.
 #[derive(Debug)]
@@ -28,7 +23,6 @@ pub struct SerialLine {
 }
 
 impl SerialLine {
-    /// A line with `baud` bits per second.
     #[must_use]
     pub fn new(baud: u32) -> Self {
         // Rounded up, so that the line is never too fast.
@@ -36,7 +30,6 @@ impl SerialLine {
         Self { byte_us, rx: VecDeque::new(), tx: VecDeque::new(), rx_end: 0, tx_end: 0 }
     }
 
-    /// Number of bytes from the host that the line can still take.
     #[must_use]
     pub fn room(&self) -> usize {
         MOST_WAITING.saturating_sub(self.rx.len())
@@ -92,11 +85,9 @@ impl SerialLine {
     }
 }
 
-/// Schedule of the controller's steps.
-///
-/// A move takes one period, and the controller takes the next command when it is over. A controller without a move
-/// takes a command as soon as it has arrived (A 2.3: ACK, then the move during the next period). Otherwise a host with
-/// the same period would lose every second period when its frames straddle the controller's steps.
+/// Schedule of the controller's steps. A move takes one period. A controller without a move takes a command as soon as
+/// it has arrived (A 2.3): otherwise a host with the same period would lose every second period when its frames
+/// straddle the controller's steps.
 #[derive(Debug)]
 pub struct Cadence {
     period_us: u64,
@@ -143,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_take_their_time_in_both_directions() {
+    fn bytes_arrive_one_byte_time_apart() {
         let mut line = SerialLine::new(9600);
         line.host_sent(1000, &[7; 16]);
         assert_eq!(line.arrived(2041).as_slice(), &[0_u8; 0]);
@@ -166,7 +157,7 @@ mod tests {
 
     /// With equal periods, host and controller exchange one command per period for every phase between their clocks.
     #[test]
-    fn every_phase_gives_a_command_a_period() {
+    fn every_phase_passes_one_command_per_period() {
         for phase in (0..40_000).step_by(500) {
             let (mut line, mut cadence) = (SerialLine::new(9600), Cadence::new(40_000, phase));
             let (mut sent, mut taken, mut acknowledged) = (0, 0, true);

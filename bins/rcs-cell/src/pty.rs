@@ -1,14 +1,11 @@
 //! A pseudo-terminal that hosts open by a path.
 //!
-//! The path is a symbolic link to the slave; a host opens it like a serial port. A pseudo-terminal has no modem lines:
-//! an open terminal stands for the host's DTR.
+//! The path is a symbolic link to the slave. A pseudo-terminal has no modem lines: an open terminal stands for the
+//! host's DTR. When a host closes it, it is prepared for the next one. A killed host leaves its exclusive lock
+//! (TIOCEXCL), which cannot be reset from outside: then a new terminal replaces it.
 //!
-//! The terminal stays open when a host closes it, and is prepared for the next host: raw mode, buffers empty. One thing
-//! cannot be reset from outside: a host that was killed leaves its exclusive lock of the port (TIOCEXCL), and then only
-//! the superuser can open it. In this case a new terminal replaces it under the same path.
-//!
-//! While the program runs, it holds an abstract socket named after the path. The kernel removes this socket when the
-//! program ends, for any reason. A link without its socket is therefore stale and may be replaced.
+//! The program holds an abstract socket named after the path, which the kernel removes with the program. A link without
+//! its socket is stale and may be replaced.
 
 use std::{
     io,
@@ -33,20 +30,16 @@ use rustix::{
 
 const SLAVES: &str = "/dev/pts";
 
-/// Errors of a pseudo-terminal and its link.
 #[derive(Debug, thiserror::Error)]
 pub enum PtyError {
     #[error("{} is the link of another rcs-cell that still runs: stop it, or choose another path", .0.display())]
     Alive(PathBuf),
-    /// The path names something that rcs-cell has not made.
     #[error("{} exists and is not a link that rcs-cell has left behind: remove it, or choose another path", .0.display())]
     Occupied(PathBuf),
-    /// The directory of the path does not exist.
     #[error("there is no directory for the link {}", .0.display())]
     NoDirectory(PathBuf),
     #[error("the link {} cannot be made: {source}", path.display())]
     Link { path: PathBuf, source: io::Error },
-    /// The terminal cannot be opened or configured.
     #[error("no pseudo-terminal: {0}")]
     Terminal(#[from] Errno),
 }
@@ -57,15 +50,11 @@ pub struct Pty {
     master: OwnedFd,
     slave: PathBuf,
     path: PathBuf,
-    /// Held while this program owns the link.
-    _alive: UnixDatagram,
+    _alive: UnixDatagram, // held while this program owns the link
 }
 
 impl Pty {
-    /// Opens a pseudo-terminal and links it at `path`.
-    ///
-    /// # Errors
-    /// [`PtyError`] with the cause. Nothing has been changed then.
+    /// Opens a pseudo-terminal and links it at `path`. On error nothing has been changed.
     pub fn open(path: &Path) -> Result<Self, PtyError> {
         let link_error = |source| PtyError::Link { path: path.to_owned(), source };
         // The link is identified by its directory, which stays the same when the link changes.
@@ -105,7 +94,6 @@ impl Pty {
         self.master.as_fd()
     }
 
-    /// Returns true if a host has the terminal open.
     #[must_use]
     pub fn has_host(&self) -> bool {
         let mut fds = [PollFd::new(&self.master, PollFlags::empty())];
@@ -113,10 +101,7 @@ impl Pty {
         asked.is_ok() && !fds.iter().any(|fd| fd.revents().contains(PollFlags::HUP))
     }
 
-    /// Reads bytes of the host without blocking; 0 if there are none.
-    ///
-    /// # Errors
-    /// The error of the operating system, except "no data" and "no host".
+    /// Reads bytes of the host without blocking; 0 if there are none, or no host.
     pub fn read(&self, bytes: &mut [u8]) -> Result<usize, PtyError> {
         match rustix::io::read(&self.master, bytes) {
             Ok(count) => Ok(count),
@@ -125,11 +110,7 @@ impl Pty {
         }
     }
 
-    /// Writes a byte for the host. If the host does not read and the terminal is full, the byte is lost, as on a serial
-    /// line.
-    ///
-    /// # Errors
-    /// As [`Pty::read`].
+    /// Writes a byte for the host. If the terminal is full, the byte is lost, as on a serial line.
     pub fn write(&self, byte: u8) -> Result<(), PtyError> {
         match rustix::io::write(&self.master, &[byte]) {
             Ok(_) | Err(Errno::AGAIN | Errno::IO | Errno::INTR) => Ok(()),
@@ -137,10 +118,7 @@ impl Pty {
         }
     }
 
-    /// Prepares the terminal for the next host after a host has closed it. Returns true if a new terminal replaced it.
-    ///
-    /// # Errors
-    /// [`PtyError`] if the new terminal or its link cannot be made.
+    /// Prepares the terminal for the next host. Returns true if a new terminal replaced it.
     pub fn renew(&mut self) -> Result<bool, PtyError> {
         if prepare(&self.slave).is_ok() {
             return Ok(false);

@@ -1,7 +1,5 @@
-//! The input and output around the state machine: clock, pseudo-terminal, standard input and output.
-//!
-//! One thread, which sleeps until a byte arrives or the next one is due. Nothing in it blocks: bytes that a host does
-//! not read are lost.
+//! The input and output around the state machine: one thread, which sleeps until a byte arrives or is due. Nothing in
+//! it blocks: bytes that a host does not read are lost.
 
 use std::{
     collections::VecDeque,
@@ -34,8 +32,7 @@ use crate::{
     pty::{Pty, PtyError},
 };
 
-/// Longest sleep, us: the program notices a signal within this time.
-const LONGEST_SLEEP: u64 = 50_000;
+const LONGEST_SLEEP: u64 = 50_000; // longest sleep, us: the program notices a signal within this time
 /// Longest time that one step simulates, s, after the program was stopped.
 const LONGEST_STEP_S: f64 = 2.0;
 
@@ -47,23 +44,19 @@ pub enum ShellError {
     Io(#[from] io::Error),
 }
 
-/// The simulated controller with its line, its console and its clock.
 pub struct Shell {
     start: Instant,
     stop: Arc<AtomicBool>,
     host: HostLine,
     faults: Option<Injector>,
-    /// Number of the controller's steps: the ticks of the fault plan.
-    tick: Tick,
+    tick: Tick, // number of the controller's steps: the ticks of the fault plan
     cadence: Cadence,
     t3: T3Controller,
     operator: Operator,
     lines: Lines,
     waiting: VecDeque<String>,
-    /// Time until which no line of the console is executed, us.
-    wait_until: u64,
-    /// A key was pressed and its step has not run yet.
-    pressed: bool,
+    wait_until: u64, // time until which no line of the console is executed, us
+    pressed: bool,   // a key was pressed and its step has not run yet
     input_open: bool,
 }
 
@@ -89,9 +82,6 @@ impl Shell {
     }
 
     /// Runs until `quit`, the end of a terminal's input, or a signal.
-    ///
-    /// # Errors
-    /// [`ShellError`] if the pseudo-terminal, standard input or waiting fails.
     pub fn run(&mut self) -> Result<(), ShellError> {
         stdout_line!("help lists the commands");
         while !self.stop.load(Ordering::Relaxed) {

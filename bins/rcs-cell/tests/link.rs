@@ -17,8 +17,7 @@ use rustix::{
 };
 use tempfile::TempDir;
 
-/// Generous time limit for a busy machine.
-const PATIENCE: Duration = Duration::from_secs(30);
+const PATIENCE: Duration = Duration::from_secs(30); // generous time limit for a busy machine
 
 /// The position report at HOME, byte by byte.
 const HOME: [u8; 16] =
@@ -30,7 +29,6 @@ const BESIDE: [u8; 16] =
 const BESIDE_REPORT: [u8; 16] =
     [0xFF, 0xFF, 0x03, 0x00, 0x0A, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x70];
 
-/// A directory for one test, removed at its end.
 struct Place(TempDir);
 
 impl Place {
@@ -43,7 +41,6 @@ impl Place {
     }
 }
 
-/// The running program, its standard input and its output.
 struct Cell {
     child: Child,
     console: ChildStdin,
@@ -146,7 +143,7 @@ impl Host {
 }
 
 #[test]
-fn the_host_finds_the_robot_at_home_and_later_where_it_left_it() {
+fn restarted_host_finds_the_robot_in_place() {
     let place = Place::new();
     let mut cell = Cell::start(&place.link(), &["--auto"]);
     cell.wait_for("waits for a host");
@@ -176,7 +173,7 @@ fn the_host_finds_the_robot_at_home_and_later_where_it_left_it() {
 }
 
 #[test]
-fn a_person_starts_the_robot_step_by_step_and_recovers_from_a_wd_error() {
+fn manual_start_up_recovers_from_a_wd_error() {
     let place = Place::new();
     let mut cell = Cell::start(&place.link(), &["--seed", "3"]);
     cell.wait_for("waits for a host");
@@ -214,7 +211,7 @@ fn a_person_starts_the_robot_step_by_step_and_recovers_from_a_wd_error() {
 }
 
 #[test]
-fn a_path_is_taken_over_from_the_dead_but_not_from_the_living() {
+fn stale_link_is_replaced_and_one_in_use_is_kept() {
     let place = Place::new();
     let mut first = Cell::start(&place.link(), &[]);
     first.wait_for("waits for a host");
