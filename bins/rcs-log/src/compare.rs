@@ -1,5 +1,5 @@
-//! `rcs-log compare`: runs jobs with two data directories and reports the differences: rows, clearances, times,
-//! outcome. It runs as many jobs in parallel as the machine has cores.
+//! `rcs-log compare`: runs jobs with two data directories, in parallel, and reports the differences: rows, clearances,
+//! times, outcome.
 
 use std::{
     collections::BTreeSet,
@@ -44,18 +44,15 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// The answer: the differences of all jobs.
 #[derive(Debug, Serialize)]
 struct Comparison {
     jobs: Vec<OneJob>,
 }
 
-/// Results of a job with both data directories.
 #[derive(Debug, Serialize)]
 struct OneJob {
     job: String,
-    /// True if both runs agree in everything that is compared.
-    same: bool,
+    same: bool, // true if both runs agree in everything that is compared
     outcome: [String; 2],
     seconds: [f64; 2],
     clearance: [String; 2],
@@ -63,7 +60,6 @@ struct OneJob {
     difference: Difference,
 }
 
-/// Runs the jobs and prints the differences.
 pub fn compare(arguments: &Arguments) -> Result<ExitCode, Error> {
     let Arguments { old, new, .. } = arguments;
     let mut names: BTreeSet<String> = arguments.jobs.iter().cloned().collect();
@@ -103,7 +99,6 @@ pub fn compare(arguments: &Arguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::from(if same { 0 } else { DIFFERENT }))
 }
 
-/// Runs a job to its end.
 fn run(data: &Path, job: &str, seed: u64) -> Result<Trace, StartError> {
     let config = RunConfig { log: LogTarget::None, shared_memory: false, seed, ..RunConfig::new(data, job) };
     let mut run = Run::new(config, Box::new(()))?;

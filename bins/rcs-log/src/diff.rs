@@ -1,9 +1,6 @@
-//! `rcs-log diff`: the differences between two runs: changed rows, motions and times ([`Changes`]), then the
-//! first tick that differs, then all differences by buffer and field. Record numbers are ignored if the runs
-//! have different task data.
-//!
-//! Ticks are aligned by number, or by command. By command, each tick is counted from the tick in which Task
-//! took the command, so that one longer command does not shift all later ticks.
+//! `rcs-log diff`: the differences between two runs: changed rows, motions and times ([`Changes`]), the first tick that
+//! differs, then all differences by field. Record numbers are ignored for different task data. Ticks are aligned by
+//! number, or from the tick in which Task took the command, so that one longer command does not shift all later ticks.
 
 use std::{
     collections::{BTreeMap, HashMap},
@@ -28,8 +25,7 @@ use crate::{
     story::{Moment, open, walk},
 };
 
-/// Greatest number of fields in the answer.
-const LISTED: usize = 40;
+const LISTED: usize = 40; // greatest number of fields in the answer
 
 /// Arguments of `diff`.
 #[derive(Clone, Debug, clap::Args)]
@@ -47,20 +43,14 @@ pub struct Arguments {
 
 #[derive(Debug, Serialize)]
 struct Differences {
-    /// Number of ticks that both logs have.
-    compared: u64,
-    /// Number of ticks that only the first log has.
-    only_a: u64,
-    /// Number of ticks that only the second log has.
-    only_b: u64,
-    /// Number of compared ticks that differ.
-    different: u64,
+    compared: u64,  // number of ticks that both logs have
+    only_a: u64,    // number of ticks that only the first log has
+    only_b: u64,    // number of ticks that only the second log has
+    different: u64, // number of compared ticks that differ
     changes: Changes,
     first: Option<First>,
-    /// Fields that differ, in the order of their first difference.
-    fields: Vec<FieldStory>,
-    /// Number of differing fields that are not in the list.
-    more_fields: usize,
+    fields: Vec<FieldStory>, // fields that differ, in the order of their first difference
+    more_fields: usize,      // number of differing fields that are not in the list
 }
 
 #[derive(Debug, Serialize)]
@@ -79,7 +69,6 @@ struct FieldStory {
     ticks: u64,
 }
 
-/// Compares two logs and prints the differences.
 pub fn diff(arguments: &Arguments) -> Result<ExitCode, Error> {
     let differences = compare(&arguments.a, &arguments.b, arguments.align)?;
     print(&differences, arguments.answer.json)?;
@@ -87,7 +76,6 @@ pub fn diff(arguments: &Arguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::from(if same { 0 } else { DIFFERENT }))
 }
 
-/// Data of a tick: inputs, output buffers, and the digest of the simulated cell.
 struct Images {
     tick: u64,
     cell: Option<u64>,
@@ -126,7 +114,6 @@ fn compare(a: &Path, b: &Path, align: Align) -> Result<Differences, Error> {
     Ok(found.differences(Changes::between(&trace_a, &trace_b, align), of_b.len()))
 }
 
-/// The task data of a log: names and contents of its attachments.
 fn task_data(log: &Log) -> Vec<(&str, &[u8])> {
     let is_meant = |attachment: &&Attachment| attachment.name.starts_with(Attachment::TASK_DATA);
     log.attachments.iter().filter(is_meant).map(|one| (one.name.as_str(), &one.data[..])).collect()

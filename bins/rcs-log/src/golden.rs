@@ -1,5 +1,4 @@
-//! `rcs-log golden`: converts logs of whole runs to small files that tests replay, each with a text for the
-//! review of changes.
+//! `rcs-log golden`: converts logs of whole runs to small files that tests replay, each with a text for review.
 
 use std::{
     fmt, fs,
@@ -27,7 +26,6 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// The answer: the files that were written.
 #[derive(Debug, Serialize)]
 struct Made {
     goldens: Vec<One>,
@@ -41,7 +39,6 @@ struct One {
     digest: String,
 }
 
-/// Makes a golden of each log.
 pub fn golden(arguments: &Arguments) -> Result<ExitCode, Error> {
     let make = |path: &PathBuf| make(path, &arguments.output);
     let goldens = arguments.files.iter().map(make).collect::<Result<_, _>>()?;

@@ -29,10 +29,8 @@ use std::{io, path::PathBuf, process::ExitCode};
 
 use clap::{Args, Parser, Subcommand};
 
-/// Exit status of a negative answer: a replay that differs, two logs that differ.
-const DIFFERENT: u8 = 1;
-/// Exit status of a usage or file error.
-const UNUSABLE: u8 = 2;
+const DIFFERENT: u8 = 1; // exit status of a negative answer: a replay that differs, two logs that differ
+const UNUSABLE: u8 = 2; // exit status of a usage or file error
 
 /// Examines the logs of runs: what happened, why, and whether the present program would do the same.
 #[derive(Debug, Parser)]
@@ -122,62 +120,44 @@ struct Answer {
 enum Error {
     #[error("{}", .source.of(.path))]
     Read { path: PathBuf, source: record::ReadError },
-    /// The log does not have the requested tick.
     #[error("{}: tick {tick} is not in the log, which has ticks {first} to {last}", path.display())]
     NoTick {
         path: PathBuf,
-        /// The requested tick.
-        tick: u64,
-        /// First tick of the log.
-        first: u64,
-        /// Last tick of the log.
-        last: u64,
+        tick: u64,  // the requested tick
+        first: u64, // first tick of the log
+        last: u64,  // last tick of the log
     },
-    /// A log without ticks.
     #[error("{}: the log holds no tick", .0.display())]
     Empty(PathBuf),
-    /// The task data cannot be used.
     #[error("the task data under {}:\n{report}", path.display())]
     Data {
         path: PathBuf,
-        /// All errors of the task data.
-        report: String,
+        report: String, // all errors of the task data
     },
-    /// The log cannot become a golden.
     #[error("{}: {source}", path.display())]
     Golden { path: PathBuf, source: record::golden::GoldenError },
-    /// The replay of this program differs from the log.
     #[error(
         "{}: this program differs from the log from tick {first} to {last}: name a log of this program",
         path.display()
     )]
     NotGolden {
         path: PathBuf,
-        /// First tick of the stretch that differs.
-        first: u64,
-        /// Last tick of that stretch.
-        last: u64,
+        first: u64, // first tick of the stretch that differs
+        last: u64,  // last tick of that stretch
     },
-    /// A fork is not possible.
     #[error("{}: {source}", path.display())]
     Fork { path: PathBuf, source: Box<fork::ForkError> },
-    /// A job cannot start with the given data.
     #[error("{source}")]
     Start { source: Box<runtime::StartError> },
-    /// The directories have no job to compare.
     #[error("neither {} nor {} has a job: name directories with jobs/NAME.job", .0.display(), .1.display())]
     NoJobs(PathBuf, PathBuf),
-    /// The HTML page cannot be written.
     #[error("{}: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },
-    /// The server for viewers cannot start.
     #[error("viewers cannot connect at 127.0.0.1:{port}: {source}; --port names another one")]
     Port {
-        /// The port on 127.0.0.1.
-        port: u16,
+        port: u16, // the port on 127.0.0.1
         source: io::Error,
     },
-    /// The operating system supplies no random numbers.
     #[error(transparent)]
     NoRandom(#[from] sessions::live::NoRandom),
     #[error("the answer cannot be written: {0}")]
@@ -205,7 +185,6 @@ fn main() -> ExitCode {
     })
 }
 
-/// Prints an answer as JSON or as text.
 fn print<T: serde::Serialize + std::fmt::Display>(answer: &T, json: bool) -> Result<(), Error> {
     if json {
         let text = serde_json::to_string(answer).map_err(io::Error::from)?;

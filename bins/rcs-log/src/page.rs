@@ -1,7 +1,6 @@
 //! `rcs-log page` and `open`: write a log as one page for a browser, which needs no other file and no network.
 //!
-//! `open` writes the page next to the log instead of serving it: other users of the machine could read a served
-//! page, and the page can be opened again.
+//! `open` writes the page next to the log: other users of the machine could read a served page.
 
 use std::{path::PathBuf, process::ExitCode};
 
@@ -30,14 +29,12 @@ pub struct Arguments {
     pub output: Option<PathBuf>,
 }
 
-/// Writes the page of a log.
 pub fn page(arguments: &Arguments) -> Result<ExitCode, Error> {
     let output = write(arguments)?;
     console::answer(&format!("{}\n", output.display()))?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes the page of a log, and opens it in a browser.
 pub fn open(arguments: &Arguments) -> Result<ExitCode, Error> {
     let output = write(arguments)?;
     console::answer(&format!("{}\n", output.display()))?;
@@ -49,7 +46,6 @@ pub fn open(arguments: &Arguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes the page; returns its path.
 fn write(arguments: &Arguments) -> Result<PathBuf, Error> {
     let output = arguments.output.clone().unwrap_or_else(|| arguments.file.with_extension("html"));
     let unwritten = |source| Error::Write { path: output.clone(), source };
@@ -77,7 +73,6 @@ fn of_log(log: &Log, name: &str, own: impl FnOnce() -> Value) -> Value {
     })
 }
 
-/// An answer of this program as a file in the page.
 fn json<T: Serialize>(name: &str, answer: &T) -> Result<Attachment, Error> {
     let data = serde_json::to_vec(answer).map_err(std::io::Error::from)?;
     Ok(Attachment { name: name.into(), media_type: "application/json".into(), data })

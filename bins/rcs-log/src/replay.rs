@@ -1,5 +1,4 @@
-//! `rcs-log replay`: computes the control processes again on the recorded inputs, and compares every output buffer of
-//! every tick, bit for bit. Several logs are replayed in parallel.
+//! `rcs-log replay`: runs the control processes again on the recorded inputs, and compares every output bit for bit.
 
 use std::{
     fmt,
@@ -34,7 +33,6 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// The answer: the results of all logs.
 #[derive(Debug, Serialize)]
 struct Outcome {
     logs: Vec<OneLog>,
@@ -43,21 +41,16 @@ struct Outcome {
 #[derive(Debug, Serialize)]
 struct OneLog {
     file: String,
-    /// True if every computed tick is the same as recorded.
-    same: bool,
+    same: bool, // true if every computed tick is the same as recorded
     ticks: u64,
     /// Number of ticks that were not computed: those in gaps, and those from a gap to the next snapshot.
     skipped: u64,
-    /// True if the log has its end record.
-    complete: bool,
-    /// The reason why part of the log cannot be read.
-    damage: Option<String>,
+    complete: bool,         // true if the log has its end record
+    damage: Option<String>, // the reason why part of the log cannot be read
     times_real_time: f64,
     digest: Option<String>,
-    /// The first difference.
-    difference: Option<String>,
-    /// The reason why the log was not replayed, with its path.
-    error: Option<String>,
+    difference: Option<String>, // the first difference
+    error: Option<String>,      // the reason why the log was not replayed, with its path
 }
 
 impl OneLog {
@@ -95,7 +88,6 @@ impl OneLog {
     }
 }
 
-/// Replays all logs and prints the results.
 pub fn replay(arguments: &Arguments) -> Result<ExitCode, Error> {
     let data = arguments.data.as_deref().map(|data| {
         let unusable =

@@ -40,9 +40,6 @@ fn rate(text: &str) -> Result<f64, String> {
 }
 
 /// Plays a log once, from its start; begins when a viewer has subscribed to a channel.
-///
-/// # Errors
-/// [`Error`] if the log cannot be read, or the port is not available.
 pub fn serve(arguments: &Arguments) -> Result<ExitCode, Error> {
     let path = &arguments.file;
     // The log contains its schemas, so logs of other versions can be shown too.
@@ -80,8 +77,7 @@ pub fn serve(arguments: &Arguments) -> Result<ExitCode, Error> {
 
 struct Pace {
     rate: f64,
-    /// Time stamp of the first message, ns, and the instant of sending it.
-    start: Option<(u64, Instant)>,
+    start: Option<(u64, Instant)>, // time stamp of the first message, ns, and the instant of sending it
 }
 
 impl Pace {

@@ -17,8 +17,7 @@ use taskdata::files::TaskData;
 use tempfile::TempDir;
 
 const TICKS: u64 = 120;
-/// Tick in which the workstation gives an impossible command.
-const COMMANDED: u64 = 50;
+const COMMANDED: u64 = 50; // tick in which the workstation gives an impossible command
 
 struct Scratch(TempDir);
 
@@ -32,12 +31,10 @@ impl Scratch {
         self.written(name, speed, COMMANDED, |_| 0)
     }
 
-    /// The same log with the command in another tick.
     fn log_commanded_at(&self, name: &str, commanded: u64) -> PathBuf {
         self.written(name, 1000, commanded, |_| 0)
     }
 
-    /// The same log with the given digests of the cell.
     fn log_of_cell(&self, name: &str, speed: u16, digest_of_cell: impl Fn(Tick) -> u64) -> PathBuf {
         self.written(name, speed, COMMANDED, digest_of_cell)
     }

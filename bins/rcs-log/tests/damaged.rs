@@ -1,5 +1,5 @@
-//! Logs damaged at known places, and files that are not logs: `rcs-log` reads the rest or prints an error, within a
-//! gigabyte of memory. The robustness campaign (tests/robustness) damages logs at random places.
+//! `rcs-log` reads the rest of a damaged log or prints an error, within a gigabyte of memory. The robustness campaign
+//! (tests/robustness) damages logs at random places.
 
 use std::{
     fs::{self, File},
@@ -14,10 +14,8 @@ use record::{CellFrame, CellModel, End, Epoch, Log, Pace, Recorder, Setup, Timin
 use taskdata::files::TaskData;
 
 const TICKS: u64 = 260;
-/// Limit of the program's address space, kilobytes.
-const LIMIT: &str = "1048576";
+const LIMIT: &str = "1048576"; // limit of the program's address space, kilobytes
 
-/// Records a small run with every kind of record.
 fn record(path: &Path) {
     let run = [("program", "test"), ("job", "nothing"), ("seed", "7")];
     let run = run.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
@@ -59,7 +57,6 @@ fn assert_answered(output: &Output, what: &str) -> i32 {
     status.unwrap()
 }
 
-/// A log with changed bytes in a chunk in the middle.
 fn with_a_bad_chunk(place: &Path) -> PathBuf {
     let path = place.join("middle.mcap");
     record(&path);
@@ -118,7 +115,6 @@ fn only_regular_files_are_logs() {
         let output = rcs_log(&["info"], &[Path::new(file)]);
         assert_eq!(assert_answered(&output, file), 2);
     }
-    // A sparse file of a terabyte.
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("hole.mcap");
     File::create(&path).unwrap().set_len(1 << 40).unwrap();

@@ -12,8 +12,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data");
-/// The pose of the tray UNIT_1.
-const TRAY: &str = "datum poses.blk:612:3-5:3";
+const TRAY: &str = "datum poses.blk:612:3-5:3"; // the pose of the tray UNIT_1
 
 static LOGS: LazyLock<TempDir> = LazyLock::new(|| tempfile::tempdir().expect("a directory for logs"));
 static LINKBAR: LazyLock<PathBuf> = LazyLock::new(|| log("linkbar.mcap", |_| {}));

@@ -1,5 +1,4 @@
-//! Changes between two runs that matter most: rows that decided differently, motions to other points, and commands with
-//! other durations.
+//! Rows that decided differently, motions to other points, and commands with other durations.
 
 use std::{collections::HashMap, fmt};
 
@@ -19,10 +18,8 @@ use crate::story::{Chronicle, CommandStory};
 #[derive(Debug, Serialize)]
 struct Rows {
     process: String,
-    /// Number of compared ticks whose headers name different rows.
-    ticks: u64,
-    /// True if the same rows fired in the same order, at other times.
-    same_order: bool,
+    ticks: u64,       // number of compared ticks whose headers name different rows
+    same_order: bool, // true if the same rows fired in the same order, at other times
     /// Tick of both runs where the order or else the times first differ. `a` and `b` are the rows.
     first: [u64; 2],
     a: String,
@@ -31,16 +28,12 @@ struct Rows {
 
 #[derive(Debug, Serialize)]
 struct Motion {
-    /// Number of ticks in which they differ.
-    ticks: u64,
-    /// First of these ticks, in both runs.
-    first: [u64; 2],
-    /// Greatest distance between the points, in; `at` is its tick in both runs.
-    greatest_in: f64,
+    ticks: u64,       // number of ticks in which they differ
+    first: [u64; 2],  // first of these ticks, in both runs
+    greatest_in: f64, // greatest distance between the points, in; `at` is its tick in both runs
     at: [u64; 2],
 }
 
-/// A command with another duration or another end.
 #[derive(Debug, Serialize)]
 struct Time {
     command: String,
@@ -48,7 +41,6 @@ struct Time {
     b: String,
 }
 
-/// Differences between two runs in terms of commands, rows and motions.
 #[derive(Debug, Default, Serialize)]
 pub struct Changes {
     rows: Vec<Rows>,
@@ -93,7 +85,6 @@ impl Changes {
         self.rows.is_empty() && self.motion.is_none() && self.link.is_none() && self.times.is_empty()
     }
 
-    /// Number of processes that decided differently, and of those with the same decisions at other times.
     #[must_use]
     pub fn deciding(&self) -> (usize, usize) {
         let late = self.rows.iter().filter(|rows| rows.same_order).count();
@@ -171,7 +162,6 @@ fn rows(process: usize, others: Others, a: &Trace, b: &Trace) -> Option<Rows> {
     Some(Rows { process: info.name.to_owned(), ticks, same_order: parted.is_none(), first, a, b })
 }
 
-/// The tick of both runs as text.
 fn both([a, b]: [u64; 2]) -> String {
     if a == b { format!("tick {a}") } else { format!("ticks {a} and {b}") }
 }

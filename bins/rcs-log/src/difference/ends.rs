@@ -13,12 +13,10 @@ pub struct End {
     pub outcome: String,
     /// Number of ticks of the run.
     pub ticks: u64,
-    /// Other facts about the end, by name.
-    facts: BTreeMap<String, String>,
+    facts: BTreeMap<String, String>, // other facts about the end, by name
 }
 
 impl End {
-    /// The end of a run in this process.
     #[must_use]
     pub fn of_run(outcome: &RunOutcome) -> Self {
         let ticks = outcome.result.ticks + u64::from(outcome.result.ramp_ticks);
@@ -49,7 +47,6 @@ impl End {
     }
 }
 
-/// A difference at the end.
 #[derive(Debug, Serialize)]
 struct Ended {
     what: &'static str,
@@ -57,7 +54,6 @@ struct Ended {
     b: String,
 }
 
-/// The differences between the ends of two runs.
 #[derive(Debug, Default, Serialize)]
 pub struct Ends(Vec<Ended>);
 

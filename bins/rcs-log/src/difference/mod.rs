@@ -1,7 +1,6 @@
 //! Differences between two runs, for `diff`, `fork` and `compare`.
 //!
-//! A [`Trace`] holds the data of a run that are compared, from its log or from the run itself. [`Changes`] lists
-//! changed rows, motions and times; [`Ends`] lists the differences at the end.
+//! A [`Trace`] holds the compared data of a run. [`Changes`] lists rows, motions and times; [`Ends`] the ends.
 
 mod changes;
 mod ends;
@@ -26,7 +25,6 @@ pub enum Align {
     Command,
 }
 
-/// The differences between two whole runs.
 #[derive(Debug, Serialize)]
 pub struct Difference {
     pub ends: Ends,

@@ -1,5 +1,3 @@
-//! The data of a run that are compared.
-
 use std::path::Path;
 
 use interfaces::{Decided, device::LinkBytes};
@@ -15,20 +13,15 @@ use crate::{
 /// Identifies ticks that are compared with each other: command number, and ticks since the command began.
 pub type Key = (u32, u64);
 
-/// The data of a tick that are compared.
 #[derive(Clone, Debug)]
 pub struct Mark {
     pub tick: u64,
-    /// Number of the command that Task has taken.
-    command: u32,
-    /// The row that fired in each process.
+    command: u32, // number of the command that Task has taken
     pub rows: [Option<Decided>; PROCESS_COUNT],
-    /// Commanded tool point, inches, world.
-    pub tool: [f64; 3],
+    pub tool: [f64; 3], // commanded tool point, inches, world
     pub sent: LinkBytes,
 }
 
-/// The data of a run that are compared.
 #[derive(Default)]
 pub struct Trace {
     pub marks: Vec<Mark>,
@@ -49,10 +42,6 @@ impl Trace {
         self.marks.push(Mark { tick, command, rows, tool, sent: moment.after.device_outputs().link_tx });
     }
 
-    /// The trace of a log.
-    ///
-    /// # Errors
-    /// [`Error::Read`] if a tick cannot be read.
     pub fn of_log(log: &Log, path: &Path) -> Result<Self, Error> {
         let mut trace = Self::default();
         walk(log, path, |moment| {
@@ -63,7 +52,6 @@ impl Trace {
         Ok(trace)
     }
 
-    /// Records the end of the run after all ticks of a log.
     pub fn ended(&mut self, log: &Log) {
         self.end = End::of_log(log, self.marks.last().map_or(0, |mark| mark.tick));
     }

@@ -31,8 +31,7 @@ pub enum Change {
     Fault(PathBuf),
     /// Replace a value of the cell description.
     Cell {
-        /// Key in the file, such as `vise.friction`.
-        key: String,
+        key: String, // key in the file, such as `vise.friction`
         value: String,
     },
 }
@@ -83,36 +82,26 @@ impl fmt::Display for Change {
 
 #[derive(Debug, thiserror::Error)]
 pub enum RefusedChange {
-    /// The task data contain no such word.
     #[error(transparent)]
     Datum(#[from] DatumError),
-    /// The changed task data have errors.
     #[error("with this change the task data have errors:\n{0}")]
     Data(String),
-    /// The text is not a valid line of a job.
     #[error("this is not a line of a job:\n{0}")]
     Line(String),
-    /// The text is not exactly one line of the expected kind.
     #[error("one {0} was expected, which is no `** load`: `datum` changes task data")]
     NotOne(&'static str),
-    /// The file of faults cannot be read.
     #[error("{}: {source}", path.display())]
     Read { path: PathBuf, source: io::Error },
-    /// The file of faults has errors.
     #[error("{}", .0.in_line())]
     Faults(Diagnostics),
-    /// The cell description has no such value.
     #[error("cell.toml has no value {key}: {known}")]
     Key { key: String, known: String },
-    /// The value is not valid TOML.
     #[error("{0} is not a TOML value")]
     Value(String),
-    /// The changed cell description is invalid.
     #[error("{0}")]
     Description(String),
 }
 
-/// A change that is refused before the run begins.
 #[derive(Debug, thiserror::Error)]
 #[error("the change is refused ({what}): {why}")]
 pub struct Refusal {
@@ -122,9 +111,7 @@ pub struct Refusal {
 
 /// An operation on a run, made from a change.
 pub enum Operation {
-    /// Load these blocks of task data.
     Data(Source),
-    /// Insert a line before the next one.
     Line(JobLine),
     /// Execute a command instead of the next one.
     Command(JobLine),
@@ -134,9 +121,6 @@ pub enum Operation {
 
 impl Operation {
     /// Applies the operation to a run; `seed` is the seed of the faults.
-    ///
-    /// # Errors
-    /// [`ChangeError`] if the run refuses the change.
     pub fn apply(self, run: &mut Run, seed: u64) -> Result<(), ChangeError> {
         match self {
             Self::Data(source) => run.change_data(source),
@@ -157,19 +141,12 @@ impl Change {
     }
 
     /// Applies a change of the cell description to its text; other changes leave the text as it is.
-    ///
-    /// # Errors
-    /// [`Refusal`] if the value does not exist, or the changed description is invalid.
     pub fn described(&self, text: &str) -> Result<String, Box<Refusal>> {
         let Self::Cell { key, value } = self else { return Ok(text.to_owned()) };
         with_value(text, key, value).map_err(|why| self.refused(why))
     }
 }
 
-/// Parses the cell description of a log.
-///
-/// # Errors
-/// [`Refusal`] if the description is invalid.
 pub fn description(text: &str) -> Result<CellDescription, Box<Refusal>> {
     CellDescription::from_toml(text).map_err(|error| {
         let why = RefusedChange::Description(error.to_string());
@@ -178,9 +155,6 @@ pub fn description(text: &str) -> Result<CellDescription, Box<Refusal>> {
 }
 
 /// Converts changes to operations, with the task data and the cell of the tick, except changes of the cell description.
-///
-/// # Errors
-/// [`Refusal`] of the first impossible change.
 pub fn operations(
     changes: &[Change],
     store: &Store,
@@ -221,7 +195,6 @@ fn faults(path: &Path, cell: &CellDescription) -> Result<Operation, RefusedChang
     Ok(Operation::Faults(Box::new(faults)))
 }
 
-/// Parses one line of a job.
 fn line(text: &str, store: &Store) -> Result<JobLine, RefusedChange> {
     let source = Source { name: "--set".to_owned(), text: text.into() };
     let (job, _) =
@@ -244,9 +217,6 @@ fn command(line: JobLine) -> Result<JobLine, RefusedChange> {
 }
 
 /// Replaces a value in the text of a cell description.
-///
-/// # Errors
-/// [`RefusedChange`] if the value does not exist, or the changed description is invalid.
 pub fn with_value(text: &str, key: &str, value: &str) -> Result<String, RefusedChange> {
     let wrong = |error: toml::de::Error| RefusedChange::Description(error.to_string());
     let mut table: toml::Table = text.parse().map_err(wrong)?;

@@ -1,16 +1,13 @@
 //! A changed word of the task data, written as `poses.blk:612:4-6:3+=20`.
 //!
-//! File, block and line are numbered as `rcs-log why` prints them: the file as in the data directory, the lines of a
-//! block from 0. Words count from 1.
+//! File, block and line as `rcs-log why` prints them: lines of a block count from 0, words from 1.
 
 use std::{fmt, str::FromStr};
 
 use taskdata::load::{BlockNumber, Source, Store, source::blocks};
 
-/// Name under which the changed blocks are loaded.
-const NAME: &str = "fork.blk";
+const NAME: &str = "fork.blk"; // name under which the changed blocks are loaded
 
-/// The text form of a datum, for messages.
 const EXPECTED: &str = "FILE:BLOCK:LINE[-LINE]:WORD=VALUE was expected, such as poses.blk:612:4-6:3+=20";
 
 /// A change of a word in some lines of a block.
@@ -31,25 +28,19 @@ enum Edit {
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DatumError {
-    /// The task data have no such file.
     #[error("the log has no file {file}: it has {known}")]
     File { file: String, known: String },
-    /// The file has no such block.
     #[error("{file} has no block {block}")]
     Block { file: String, block: u32 },
-    /// The block has no such line.
     #[error("{block} of {file} has no line {line}: its last is {last}")]
     Line {
         file: String,
         block: BlockNumber,
         line: usize,
-        /// Number of the last line.
-        last: usize,
+        last: usize, // number of the last line
     },
-    /// The line has no such word.
     #[error("line {line} has no word {word}: it is `{text}`")]
     Word { line: usize, word: usize, text: String },
-    /// The word is not a number.
     #[error("word {word} of line {line} is {found}: += and -= need a whole number")]
     NoNumber { line: usize, word: usize, found: String },
 }
@@ -98,10 +89,7 @@ struct Changed {
 pub struct Words(Vec<Changed>);
 
 impl Words {
-    /// Changes a word, on top of all changes so far.
-    ///
-    /// # Errors
-    /// [`DatumError`] if the data have no such word, or `+=` or `-=` finds no number.
+    /// Changes a word, on top of all changes so far. `+=` and `-=` need a number.
     pub fn change(&mut self, store: &Store, datum: &Datum) -> Result<(), DatumError> {
         let known = |changed: &Changed| changed.file == datum.file && changed.number.number == datum.block;
         if let Some(block) = self.0.iter_mut().find(|changed| known(changed)) {

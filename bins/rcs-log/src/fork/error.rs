@@ -1,5 +1,3 @@
-//! Errors of forking a log.
-
 use std::{io, path::PathBuf};
 
 use record::{ReadError, ReplayError};
@@ -9,10 +7,8 @@ use super::change::Refusal;
 
 #[derive(Debug, thiserror::Error)]
 pub enum ForkError {
-    /// The log does not hold the whole run.
     #[error(transparent)]
     Repeat(#[from] RepeatError),
-    /// The task data of the log are invalid.
     #[error(transparent)]
     Data(#[from] ReplayError),
     #[error(transparent)]
@@ -23,8 +19,7 @@ pub enum ForkError {
     Refused(#[from] Box<Refusal>),
     #[error("the change is refused after tick {tick}: {source}")]
     Change {
-        /// The last tick before the change.
-        tick: u64,
+        tick: u64, // the last tick before the change
         source: ChangeError,
     },
     /// A change of the cell after tick 0. The cell is built before the first tick.
@@ -33,15 +28,11 @@ pub enum ForkError {
     /// The log has no such tick, or no tick after it.
     #[error("there is nothing to fork after tick {tick}: a tick from 0 to {last} was expected")]
     NoTick {
-        /// The requested tick.
-        tick: u64,
-        /// The last possible tick.
-        last: u64,
+        tick: u64, // the requested tick
+        last: u64, // the last possible tick
     },
-    /// The run has no failure, which `--at-failure` needs.
     #[error("nothing went wrong in this run: name a tick with --tick")]
     NoFailure,
-    /// The output would replace the log of the fork, or a file that is not a log.
     #[error("the fork cannot be written to {path}: {source}")]
     Output { path: PathBuf, source: io::Error },
     /// The program has changed, or the log lacks data that the run depended on.
@@ -49,17 +40,13 @@ pub enum ForkError {
         "this program differs from the log from tick {tick} on ({field} was {was}, is {is}): fork a log of this program"
     )]
     Differs {
-        /// The first tick that differs.
-        tick: u64,
-        /// Name of a field of a buffer, or of the cell.
-        field: String,
+        tick: u64,     // the first tick that differs
+        field: String, // name of a field of a buffer, or of the cell
         was: String,
         is: String,
     },
-    /// The repeated run ends before the log does.
     #[error("this program ends the run at tick {0}, where the log goes on")]
     Over(u64),
-    /// The attachments of the log cannot be unpacked.
     #[error("the files of the log cannot be unpacked: {0}")]
     Scratch(#[from] io::Error),
 }

@@ -1,8 +1,7 @@
 //! `rcs-log fork`: repeats the run of a log with a change.
 //!
-//! The run of a log is repeated from tick 0 with the job, data and seed of the log ([`runtime::repeat`]), and each tick
-//! is compared with the log, bit for bit. After a given tick the run is changed ([`change`]) and continues to its end.
-//! The answer lists the differences from the log ([`crate::difference`]). A run of four minutes takes about a second.
+//! The run is repeated from tick 0 with the job, data and seed of the log ([`runtime::repeat`]), and compared bit for
+//! bit. After a given tick it is changed ([`change`]). A run of four minutes takes about a second.
 
 mod change;
 mod datum;
@@ -60,15 +59,10 @@ pub struct Arguments {
 struct Forked {
     file: String,
     job: String,
-    /// The last tick before the changes.
-    tick: u64,
-    /// With `--at-failure`: the command that the next tick begins.
-    before: Option<String>,
-    /// The changes of `--set`.
-    set: Vec<String>,
-    /// Simulated time divided by computing time.
-    times_real_time: f64,
-    /// Outcomes of the log and of the fork.
+    tick: u64,              // the last tick before the changes
+    before: Option<String>, // with `--at-failure`: the command that the next tick begins
+    set: Vec<String>,       // the changes of `--set`
+    times_real_time: f64,   // simulated time divided by computing time
     outcome: [String; 2],
     seconds: [f64; 2],
     log: Option<PathBuf>,
@@ -76,7 +70,6 @@ struct Forked {
     difference: Difference,
 }
 
-/// Forks a log and prints the differences.
 pub fn fork(arguments: &Arguments) -> Result<ExitCode, Error> {
     let log = open(&arguments.file)?;
     let failed = |source| Error::Fork { path: arguments.file.clone(), source: Box::new(source) };
@@ -140,8 +133,7 @@ fn run(log: &Log, arguments: &Arguments, tick: u64) -> Result<Trace, ForkError> 
     Ok(run.trace)
 }
 
-/// Converts the changes to operations before the run begins. Writes a changed cell description into the run's
-/// directory.
+/// Converts the changes to operations before the run begins, and writes a changed cell description.
 fn prepare(
     log: &Log,
     changes: &[Change],

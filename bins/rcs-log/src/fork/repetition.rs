@@ -11,10 +11,8 @@ use runtime::Run;
 use super::ForkError;
 use crate::{difference::Trace, story::Moment};
 
-/// A run that is compared with a log.
 pub struct Repetition {
     pub run: Run,
-    /// The data that are compared after the run.
     pub trace: Trace,
     before: CommonMemory,
     external: Vec<Leaf>,
@@ -22,7 +20,6 @@ pub struct Repetition {
 }
 
 impl Repetition {
-    /// A repetition before its first tick.
     pub fn new(run: Run) -> Self {
         Self {
             run,
@@ -55,9 +52,6 @@ impl Repetition {
     }
 
     /// Runs up to a tick of the log and compares it with the log.
-    ///
-    /// # Errors
-    /// [`ForkError::Differs`] if a field differs, [`ForkError::Over`] if the run ends before the tick.
     pub fn follow(&mut self, logged: &LoggedTick) -> Result<(), ForkError> {
         let mut cell = 0;
         while self.run.last_tick() < logged.tick {

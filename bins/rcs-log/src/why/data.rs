@@ -1,6 +1,5 @@
-//! The task data of the last commands, each with file, block and line: the point of the path, the grip with its
-//! movetable and sizes, the location. Records are found by their numbers, because two objects can have forms
-//! with the same text in different files.
+//! The task data of the last commands, each with file, block and line: point of the path, grip with movetable and
+//! sizes, location. Records are found by their numbers, because forms can have the same text.
 
 use interfaces::{
     CommonMemory,
@@ -31,7 +30,6 @@ pub fn used(store: &Store, process: ProcessId, memory: &CommonMemory, way: Optio
     found.lines
 }
 
-/// Collects lines, one for each record.
 struct Found<'s> {
     store: &'s Store,
     view: TaskData<'s>,
@@ -92,7 +90,6 @@ impl Found<'_> {
         self.sizes(order);
     }
 
-    /// The record of END-EFF-PARA.
     fn sizes(&mut self, order: &EmoveCommand) {
         let id = order.object_parameters;
         if let (Some(object), Some(grip)) = (order.object, id.of(self.view.end_effs)) {
@@ -101,7 +98,6 @@ impl Found<'_> {
         }
     }
 
-    /// The location point, and the array of a sector.
     fn location(&mut self, order: &EmoveCommand) {
         let origins = self.store.origins();
         let (point, array) = (order.site.record, order.site.array);
@@ -110,7 +106,6 @@ impl Found<'_> {
         self.add(&format!("array {name}"), &origins.arrays, array.index());
     }
 
-    /// A movetable; `of` names its owner.
     fn movetable(&mut self, of: &str, id: MovtabId) {
         let name = id.of(self.view.movetables).map_or_else(String::new, |table| table.name.to_string());
         self.add(&format!("movetable {name}{of}"), &self.store.origins().movetables, id.index());

@@ -19,13 +19,11 @@ const KEPT: usize = 4096;
 /// A command, valid from the tick of its writing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Commanded {
-    /// Tick of writing. Task reads it in the same tick, other receivers one tick later.
-    pub tick: u64,
+    pub tick: u64, // Task reads it in the same tick, other receivers one tick later
     pub number: u32,
     pub text: String,
 }
 
-/// A row, valid from the tick in which it first fired.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fired {
     pub tick: u64,
@@ -153,7 +151,6 @@ fn keep<T>(entries: &mut Vec<T>, entry: T) {
     entries.push(entry);
 }
 
-/// The last entry at or before a tick.
 fn latest<T>(entries: &[T], tick: u64, tick_of: impl Fn(&T) -> u64) -> Option<&T> {
     let end = entries.partition_point(|entry| tick_of(entry) <= tick);
     entries.get(end.checked_sub(1)?)
@@ -171,8 +168,7 @@ pub fn condition(asked: &Condition) -> String {
     format!("{} is {}", asked.variable, asked.values.join(" or "))
 }
 
-/// Action and next step of a row as text: `GraspObj, then Grasping`. For a row that fires in any step, the text
-/// names the step: `Wait in step moving`.
+/// Action and next step of a row: `GraspObj, then Grasping`, or for a row of any step `Wait in step moving`.
 pub fn effect(row: &Row, step: &str) -> String {
     let at = if row.steps.is_empty() && row.next.is_none() && !step.is_empty() {
         format!(" in step {step}")

@@ -1,11 +1,9 @@
 //! What led to a failure, and what it led to: the commands before it, the trace to its first cause, and the reports up
 //! to Task.
 //!
-//! The trace begins with the process that first reported the reason which Task received. The row that fired when that
-//! process began to report it has new conditions: those that were false in the previous tick. If a process below
-//! reports a failure at that time, or reported a change in the previous tick, the trace continues with that process and
-//! the tick of its report. It ends at a process with no such report from below. The cause is then a device, a limit, or
-//! data. From this process, the commands are traced upwards: who gave each command, when, and by which row.
+//! The trace begins with the process that first reported the reason which Task received. Its row has new conditions:
+//! those that were false in the previous tick. If a process below failed or changed then, the trace continues with it;
+//! else the cause is a device, a limit, or data. From there, the commands are traced upwards.
 
 mod history;
 
@@ -125,8 +123,7 @@ fn down(history: &History, process: ProcessId, tick: u64) -> (Root, Vec<Link>) {
     (root, links)
 }
 
-/// The process below that made the row of this tick fire: one that reports a failure, or one that reported a
-/// change in the previous tick.
+/// The process below that made the row fire: it reports a failure, or reported a change in the previous tick.
 fn below(history: &History, at: Root) -> Option<Root> {
     let seen = at.tick.checked_sub(1)?;
     let said = |process: ProcessId| Some((process, history.report(process, seen)?));
@@ -161,8 +158,7 @@ fn report(history: &History, at: Root) -> Link {
     Link { tick: at.tick, process: history.info(at.process).name.to_owned(), text }
 }
 
-/// The conditions of a row that the previous row lacks: the reasons why it fired. `None` unless it fired for
-/// the first time and under the same command as in the previous tick.
+/// The conditions that the previous row lacks. `None` unless the row fired for the first time under the same command.
 fn news(history: &History, at: Root, fired: &history::Fired) -> Option<String> {
     if fired.tick != at.tick {
         return None;
@@ -181,11 +177,9 @@ fn news(history: &History, at: Root, fired: &history::Fired) -> Option<String> {
     (!changed.is_empty()).then(|| changed.join(", "))
 }
 
-/// The action of rows that pass the decision on to the next table.
-const CONSULT: &str = "consult";
+const CONSULT: &str = "consult"; // the action of rows that pass the decision on to the next table
 
-/// The values for which a row fired, except those of conditions of earlier rows. The step is left out, because
-/// it is the table's own state.
+/// The values for which a row fired, except those of conditions of earlier rows, without the step.
 fn changed<'a>(before: impl Iterator<Item = &'a Row>, now: &Fired) -> Vec<String> {
     let known: Vec<&Condition> = before.flat_map(|row| row.when).collect();
     let asked = now.row.when.iter().zip(now.conditions());
