@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn a_locale_tells_its_signs() {
+    fn locale_selects_the_characters() {
         assert!(is_utf8(Some("en_GB.UTF-8")) && is_utf8(Some("C.utf8")));
         assert!(!is_utf8(Some("C")) && !is_utf8(None));
     }

@@ -1,12 +1,9 @@
-//! Errors of the console.
-
 use std::{io, path::PathBuf};
 
 use executive::memory::SharedMemoryError;
 
 #[derive(Debug, thiserror::Error)]
 pub enum ConsoleError {
-    /// The run does not exist, or cannot be read.
     #[error(transparent)]
     SharedMemory(#[from] SharedMemoryError),
     #[error(transparent)]
@@ -15,23 +12,16 @@ pub enum ConsoleError {
     OperateLog,
     #[error("{}", .source.of(.path))]
     Log { path: PathBuf, source: record::ReadError },
-    /// The log has no ticks.
     #[error("{}: the log holds no tick: nothing can be shown", .0.display())]
     Empty(PathBuf),
-    /// The log does not contain the tick.
     #[error("tick {tick} is not there; there are ticks {first} to {last}")]
     NoTick {
-        /// The requested tick.
-        tick: u64,
-        /// First tick of the log.
-        first: u64,
-        /// Last tick of the log.
-        last: u64,
+        tick: u64,  // the requested tick
+        first: u64, // first tick of the log
+        last: u64,  // last tick of the log
     },
-    /// `--once` needs a run or a log.
     #[error("--once needs a run or a log: --run NAME or --log FILE")]
     NothingNamed,
-    /// The run has not published a tick yet.
     #[error("the run {0} has published no tick yet: try again")]
     NoPicture(String),
     #[error(

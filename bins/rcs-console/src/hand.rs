@@ -7,29 +7,22 @@ use sessions::operator::{Client, ClientError, Name};
 
 use crate::rcs_console::model::Operating;
 
-/// Time between two status requests, which also keep the session alive. It is well below the time after which a
-/// run considers the operator silent.
+/// Time between two status requests, which also keep the session alive.
 const ASK: Duration = Duration::from_millis(100);
 
 pub struct Hand {
     client: Client,
     asked: Option<Instant>,
-    /// Number of the request for the directory of the task data.
-    data: Option<u32>,
+    data: Option<u32>, // number of the request for the directory of the task data
 }
 
 impl Hand {
-    /// Open the session.
-    ///
-    /// # Errors
-    /// [`ClientError`] if the run accepts no operator.
     pub fn reach(run: &RunName) -> Result<Self, ClientError> {
         let name = format!("console-{}", std::process::id());
         let name: Name = name.parse().map_err(sessions::operator::protocol::ProtocolError::from)?;
         Ok(Self { client: Client::connect(&operator_socket(run), &name)?, asked: None, data: None })
     }
 
-    /// Send the queued requests, and receive the answers.
     pub fn work(&mut self, operating: &mut Operating, is_over: bool) {
         if operating.lost.is_some() {
             return;

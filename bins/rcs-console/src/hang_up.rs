@@ -1,7 +1,6 @@
 //! Ends the console when its terminal disappears: a closed window, a lost connection, `tmux kill-session`.
 //!
-//! Reading from such a terminal fails at once, and the library that reads keys tries again forever. A thread
-//! therefore waits for the hang-up.
+//! The library that reads keys would try again forever, so a thread waits for the hang-up.
 
 use std::{
     fs::File,
@@ -15,13 +14,9 @@ use rustix::{
     io::Errno,
 };
 
-/// Exit status of a console whose terminal has disappeared.
-const NO_TERMINAL: i32 = 1;
+const NO_TERMINAL: i32 = 1; // exit status of a console whose terminal has disappeared
 
 /// End this program at once when the keyboard's terminal disappears. A run detects the end of the session.
-///
-/// # Errors
-/// The error of the system if it provides no terminal or no thread.
 pub fn end_with_terminal() -> io::Result<()> {
     // The same choice as in the library that reads keys.
     let keyboard =

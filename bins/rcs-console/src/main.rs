@@ -8,8 +8,7 @@ use programs::{
     shipped,
 };
 
-/// Exit status of a usage or file error.
-const UNUSABLE: u8 = 2;
+const UNUSABLE: u8 = 2; // exit status of a usage or file error
 
 fn main() -> ExitCode {
     shipped::carry();

@@ -7,14 +7,8 @@
 //!                                                     keys
 //! ```
 //!
-//! * [`source`]: gives a [`Picture`](picture::Picture) for a tick, and the [`Story`](story::Story) of all ticks;
-//! * [`model`]: the state of the console without a terminal: keys and pictures in, lines and choices out;
-//! * [`view`]: the model as a frame of text, on any terminal of at least 80 x 24;
-//! * [`terminal`]: keys, signals, and restoring the terminal at the end.
-//!
-//! * `watch`: saves the watched fields between sessions;
-//! * `hand`: the session of an operator with a run, with `--operate`;
-//! * `hang_up`: the end of the console if its terminal disappears.
+//! [`source`] gives a [`Picture`](picture::Picture) for a tick, and the [`Story`](story::Story) of all ticks. [`model`]
+//! is the state of the console without a terminal, [`view`] draws it on at least 80 x 24, [`terminal`] reads keys.
 //!
 //! Without `--operate` the console only reads. A run never waits for the console.
 

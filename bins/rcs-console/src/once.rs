@@ -9,9 +9,6 @@ use crate::rcs_console::{
 };
 
 /// Print a screen of the run or log on the command line.
-///
-/// # Errors
-/// [`ConsoleError`] if it cannot be read, or does not contain the tick.
 pub fn print(cli: &Cli, screen: Screen) -> Result<(), ConsoleError> {
     let (source, name): (Box<dyn Source>, String) = match (&cli.run, &cli.log) {
         (Some(run), _) => (Box::new(Live::open(run, None)?), run.to_string()),

@@ -4,23 +4,18 @@ use closed_loop::failure;
 use interfaces::{CommonMemory, ExternalInputs, Fault, ProcessId};
 use rcs_core::tick::{TICK_S, Tick};
 
-/// One tick: inputs, outputs and times, all of the same tick.
 #[derive(Clone)]
 pub struct Picture {
     pub tick: Tick,
-    /// The external inputs of the processes.
     pub external: ExternalInputs,
-    /// Common memory after the tick.
     pub memory: CommonMemory,
     /// Times of the tick; `None` in a log of a run in fast clock.
     pub timing: Option<Timing>,
 }
 
-/// Times of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timing {
-    /// Time of the controller, ns.
-    pub controller_ns: u64,
+    pub controller_ns: u64, // ns
     /// Number of skipped slots of the 40 ms grid since the start of the run.
     pub skipped: u64,
     /// Heap allocations of the controller since the start, if known.
@@ -34,7 +29,6 @@ impl Picture {
         self.tick.0 as f64 * TICK_S
     }
 
-    /// The command of a process, in the manual's spelling; empty for none.
     #[must_use]
     pub fn command(&self, process: ProcessId) -> String {
         failure::command(process, &self.external.hws, &self.memory)

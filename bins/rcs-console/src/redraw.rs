@@ -26,15 +26,13 @@ pub fn with_control(event: &Event) -> Option<char> {
     }
 }
 
-/// Clear the terminal, so that the next picture is drawn completely. `Terminal::clear` would wait for the terminal's
-/// cursor report.
+/// Clear the terminal. `Terminal::clear` would wait for the terminal's cursor report.
 pub fn cleared() -> io::Result<DefaultTerminal> {
     execute!(io::stdout(), Clear(ClearType::All))?;
     DefaultTerminal::new(CrosstermBackend::new(io::stdout()))
 }
 
-/// Return the terminal to the shell until it continues this program. The console sends nothing in the meantime,
-/// so the run releases stick and buttons.
+/// Return the terminal to the shell until it continues this program. Meanwhile the run releases stick and buttons.
 pub fn suspended(terminal: DefaultTerminal) -> Result<DefaultTerminal, ConsoleError> {
     drop(terminal);
     ratatui::try_restore().map_err(ConsoleError::Terminal)?;

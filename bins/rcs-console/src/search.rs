@@ -14,7 +14,6 @@ pub struct Search {
 }
 
 impl Search {
-    /// Start with a first search.
     #[must_use]
     pub fn begin(wanted: Option<RunName>) -> (Waiting, Self) {
         let search = Self { wanted, looked: Instant::now() };

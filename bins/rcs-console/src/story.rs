@@ -17,23 +17,18 @@ use record::{
 
 use crate::rcs_console::picture::Picture;
 
-/// State of a process from a tick on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Doing {
-    /// First tick of the state.
-    pub tick: u64,
-    /// Number of its command; 0 for T3 Interface, which gets a new one in every tick.
-    pub number: u32,
+    pub tick: u64,   // the first one of the state
+    pub number: u32, // of its command; 0 for T3 Interface, which gets a new one in every tick
     /// The row that decided last.
     pub decided: Option<Decided>,
-    /// Step of the command after that row.
-    pub step: Option<Name16>,
+    pub step: Option<Name16>, // of the command after that row
     /// `executing`, `done`, `not-detected` ...
     pub report: &'static str,
     pub fault: Fault,
 }
 
-/// A failure that has reached Task.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trouble {
     /// Tick in which Task first reported it.
@@ -42,7 +37,6 @@ pub struct Trouble {
     pub failure: Failure,
 }
 
-/// A restart of the link to the robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Restart {
     pub tick: u64,
@@ -56,8 +50,7 @@ pub struct Story {
     lines: Vec<LogLine>,
     times: Histogram,
     watch: Box<Watch>,
-    /// Ticks in which a command other than PAUSE finished.
-    worked: Vec<Tick>,
+    worked: Vec<Tick>, // ticks in which a command other than PAUSE finished
     last: u64,
     /// The account that the run made at its end; `None` during the run, or if it was killed.
     ended: Option<Option<Account>>,
@@ -192,8 +185,7 @@ impl Story {
         Some((found, lowest))
     }
 
-    /// The failure that belongs to a picture: the one that Task reports, or that reaches Task in the next ticks
-    /// of a log.
+    /// The failure that belongs to a picture: that of Task, or one that reaches Task in the next ticks of a log.
     #[must_use]
     pub fn present_trouble(&self, picture: &Picture) -> Option<&Trouble> {
         let tick = picture.tick.0;
@@ -302,7 +294,6 @@ fn keep<T>(entries: &mut Vec<T>, entry: T, limit: usize) {
     entries.push(entry);
 }
 
-/// The entries up to a tick.
 fn until<T>(entries: &[T], tick: u64, tick_of: impl Fn(&T) -> u64) -> &[T] {
     &entries[..entries.partition_point(|entry| tick_of(entry) <= tick)]
 }

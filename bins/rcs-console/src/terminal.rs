@@ -1,7 +1,6 @@
 //! Runs the console in the terminal: reads keys, draws frames, and restores the terminal at the end.
 //!
-//! The terminal is restored after quitting, an error, a panic (by the hook of `ratatui`), and signals that ask
-//! the program to end.
+//! The terminal is restored after quitting, an error, a panic (by the hook of `ratatui`), and signals.
 
 use std::{
     io, mem,
@@ -46,17 +45,11 @@ use crate::rcs_console::{
     watch,
 };
 
-/// Time between two reads of a run: a tick.
-const LOOK_AT: Duration = Duration::from_millis(40);
-/// Time between two frames: every other tick (VI.6).
-const DRAW: Duration = Duration::from_millis(80);
-/// Time limit for an orderly end after a signal.
-const PATIENCE: Duration = Duration::from_secs(1);
+const LOOK_AT: Duration = Duration::from_millis(40); // time between two reads of a run: a tick
+const DRAW: Duration = Duration::from_millis(80); // time between two frames: every other tick (VI.6)
+const PATIENCE: Duration = Duration::from_secs(1); // time limit for an orderly end after a signal
 
 /// Show the source on the command line until the user quits.
-///
-/// # Errors
-/// [`ConsoleError`] if the source cannot be read, or if the terminal cannot be used.
 pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
     let stop = Arc::new(AtomicBool::new(false));
     end_by_signal(Arc::clone(&stop)).map_err(ConsoleError::Signals)?;
@@ -119,15 +112,14 @@ impl Console {
     }
 }
 
-/// Let a signal set `stop`, which ends this program in order. If the terminal blocks output (Ctrl-S, a hanging
-/// line), its modes are restored, and the program ends after a time limit.
+/// Let a signal set `stop`. If the terminal blocks output (Ctrl-S, a hanging line), the program ends after a time
+/// limit.
 fn end_by_signal(stop: Arc<AtomicBool>) -> io::Result<()> {
     let mut signals = Signals::new([SIGTERM, SIGHUP, SIGINT, SIGQUIT])?;
     let wait = move || {
         if signals.forever().next().is_some() {
             stop.store(true, Ordering::Relaxed);
             thread::sleep(PATIENCE);
-            // No message is possible: the program ends because the terminal blocks output.
             let _ = terminal::disable_raw_mode();
             process::exit(1);
         }
@@ -149,17 +141,12 @@ struct Session {
     console: Console,
     look: Look,
     stop: Arc<AtomicBool>,
-    /// Time of the last frame.
-    drawn: Option<Instant>,
-    /// Path of the run's log, if it was named.
-    log: Option<PathBuf>,
+    drawn: Option<Instant>, // time of the last frame
+    log: Option<PathBuf>,   // path of the run's log, if it was named
     operate: bool,
-    /// True if the run ends with this console.
     ends_run: bool,
-    /// Directory of the task data for listing blocks, if neither run nor log names one.
-    data: PathBuf,
-    /// File with the list of watched fields.
-    watch: Option<PathBuf>,
+    data: PathBuf, // directory of the task data for listing blocks, if neither run nor log names one
+    watch: Option<PathBuf>, // file with the list of watched fields
     watched: Vec<String>,
 }
 
@@ -291,7 +278,6 @@ impl Session {
         effect
     }
 
-    /// Handle a key of the choice of runs.
     fn choose(&mut self, key: Key) -> Effect {
         let Console::Waiting(waiting, _) = &mut self.console else { return Effect::Draw };
         match key {
@@ -327,8 +313,8 @@ impl Session {
     }
 }
 
-/// The log of a run: the named one, or that of its job in `runs/`. It must contain the last tick of the run,
-/// bit for bit, so that a log of an older run of the same job is not used.
+/// The log of a run: the named one, or that of its job in `runs/`. It must contain the last tick of the run, bit for
+/// bit.
 fn log_of(source: &dyn Source, named: Option<&Path>) -> Result<Recorded, String> {
     let about = source.about();
     if about.state == State::Log {

@@ -28,8 +28,7 @@ use rustix::{
 const LINES: NonZero<u16> = NonZero::new(24).unwrap();
 const COLUMNS: NonZero<u16> = NonZero::new(80).unwrap();
 const TO_SAFE: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
-/// Time limit for a text to appear on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(30);
+const PATIENCE: Duration = Duration::from_secs(30); // time limit for a text to appear on a busy machine
 
 struct Silent;
 
@@ -69,7 +68,6 @@ fn begin_console(
         .unwrap()
 }
 
-/// Output of a program, each piece with its time.
 type Written = Vec<(Duration, Vec<u8>)>;
 
 struct Terminal {
@@ -77,13 +75,11 @@ struct Terminal {
     keys: File,
     slave: OwnedFd,
     parser: Arc<Mutex<vt100::Parser>>,
-    /// All output to the terminal, with times.
-    written: Arc<Mutex<Written>>,
+    written: Arc<Mutex<Written>>, // all output to the terminal, with times
     before: Termios,
 }
 
 impl Terminal {
-    /// Start the console in a directory, with an environment of its own.
     fn start(arguments: &[&str], directory: &Path, environment: &[(&str, &Path)]) -> Self {
         let (master, slave) = open_terminal();
         let before = tcgetattr(&slave).unwrap();
@@ -102,7 +98,6 @@ impl Terminal {
         Self { child, keys: File::from(master), slave, parser, written, before }
     }
 
-    /// All output to the terminal so far.
     fn written(&self) -> Written {
         locked(&self.written).clone()
     }
@@ -111,13 +106,11 @@ impl Terminal {
         locked(&self.parser).screen().contents()
     }
 
-    /// Wait until the screen contains a text.
     fn wait_for(&self, text: &str) {
         self.wait_while(|screen| !screen.contains(text), &format!("{text:?} did not appear"));
     }
 
-    /// Press Escape, and wait until the text that it closes disappears. The terminal would take a key read
-    /// together with Escape for that key with Alt.
+    /// Press Escape, and wait until the text that it closes disappears: Escape with the next key would be Alt.
     fn escape(&mut self, closes: &str) {
         self.press("\x1b");
         self.wait_while(|screen| screen.contains(closes), &format!("{closes:?} did not go away"));
@@ -151,7 +144,6 @@ impl Terminal {
         status.code()
     }
 
-    /// Wait for the end; the whole terminal must be restored.
     fn end(mut self) -> Option<i32> {
         let status = self.status();
         let begun = Instant::now();
@@ -168,7 +160,6 @@ impl Terminal {
     }
 }
 
-/// A failed test must not leave the program running.
 impl Drop for Terminal {
     fn drop(&mut self) {
         // After a successful test the program has already ended.
@@ -349,7 +340,6 @@ fn operator_jogs_recovers_from_an_emergency_stop_and_finishes() {
     assert_eq!(outcomes.last(), Some(&"finished"), "{outcomes:?}");
 }
 
-/// An editable copy of the repository's data.
 fn own_data(directory: &Path) -> PathBuf {
     let data = directory.join("data");
     for from in [shipped(), shipped().join("objects")] {
@@ -364,14 +354,12 @@ fn own_data(directory: &Path) -> PathBuf {
     data
 }
 
-/// Move the robot up with the joystick box, record the pose there as VIA-1 of block 610, and move the robot down again,
-/// with a pause between the keys.
+/// Move the robot up with the joystick box, record the pose there as VIA-1 of block 610, and move it down again.
 fn teach(console: &mut Terminal, pause: Duration) {
     thread::sleep(pause);
     console.press("6ssw");
     console.wait_for("s=2.00 in");
     console.wait_for("box       WORLD");
-    // Up, record, down again.
     thread::sleep(pause);
     console.press("\x1b[5~");
     console.wait_for("joystick up");

@@ -21,10 +21,8 @@ pub struct Field {
     pub value: String,
     /// Type, such as `u32`, `option text 10`, or the name of an enum.
     pub kind: String,
-    /// Unit; empty for none.
     pub unit: &'static str,
-    /// True if the value differs from the previous picture.
-    pub changed: bool,
+    pub changed: bool, // since the previous picture
 }
 
 struct Images {
@@ -66,7 +64,6 @@ pub fn inputs(process: ProcessId, picture: &Picture, last: Option<&Picture>) -> 
     inner.chain(outer).collect()
 }
 
-/// The buffers that a process writes, without its header.
 #[must_use]
 pub fn outputs(process: ProcessId, picture: &Picture, last: Option<&Picture>) -> Vec<Field> {
     let (now, was) = (Images::of(picture), last.map(Images::of));
@@ -85,12 +82,10 @@ pub fn is_within(path: &str, buffer: &str) -> bool {
     path.strip_prefix(buffer).is_some_and(|rest| rest.starts_with(['.', '[']) || rest.is_empty())
 }
 
-/// The names of all fields of common memory and of the inputs from outside.
 pub fn paths() -> impl Iterator<Item = &'static str> {
     MEMORY.iter().chain(OUTSIDE.iter()).map(|leaf| leaf.path.as_str())
 }
 
-/// The fields in buffers, in the order of the buffers.
 #[must_use]
 pub fn under(buffers: &[&str], picture: &Picture, last: Option<&Picture>) -> Vec<Field> {
     let (now, was) = (Images::of(picture), last.map(Images::of));

@@ -1,5 +1,4 @@
-//! A drawing of the cell in characters, from above and from the side: its bodies, the arm at the resolvers' angles, and
-//! the bodies nearest to the robot.
+//! A drawing of the cell in characters, from above and from the side, with the bodies nearest to the robot.
 
 use std::path::Path;
 
@@ -18,22 +17,15 @@ use plant::{
 
 use super::{Section, Text, Tone};
 
-/// Least number of lines of a view; a smaller terminal scrolls.
-const LEAST_LINES: usize = 13;
-/// A smaller body is marked only by its name, in.
-const LEAST: f64 = 6.0;
-/// A larger body is not drawn, in.
-const LARGEST: f64 = 200.0;
-/// Range around the arm within which near bodies are searched, in.
-const NEAR: f64 = 24.0;
-/// Number of near bodies that are named.
-const NAMED: usize = 3;
+const LEAST_LINES: usize = 13; // least number of lines of a view; a smaller terminal scrolls
+const LEAST: f64 = 6.0; // a smaller body is marked only by its name, in
+const LARGEST: f64 = 200.0; // a larger body is not drawn, in
+const NEAR: f64 = 24.0; // range around the arm within which near bodies are searched, in
+const NAMED: usize = 3; // number of near bodies that are named
 
-/// The bodies of a cell description.
 pub struct Drawing {
     room: Room,
-    /// Name, lowest and highest corner of each body, in.
-    blocks: Vec<(String, [f64; 3], [f64; 3])>,
+    blocks: Vec<(String, [f64; 3], [f64; 3])>, // Name, lowest and highest corner of each body, in
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +45,6 @@ impl Side {
     }
 }
 
-/// Columns and lines of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Size {
     columns: usize,
@@ -65,16 +56,12 @@ type Place = (isize, isize);
 /// A sheet of characters, and the part of the world that it shows.
 struct Sheet {
     signs: Vec<Vec<char>>,
-    /// True for characters of labels, marks and the arm, which no label may cover.
-    taken: Vec<Vec<bool>>,
-    /// Letters of the bodies whose names have no room.
-    legend: Vec<String>,
+    taken: Vec<Vec<bool>>, // true for characters of labels, marks and the arm, which no label may cover
+    legend: Vec<String>,   // letters of the bodies whose names have no room
     low: (f64, f64),
-    /// Inches per column; a line is twice as high.
-    inches: f64,
+    inches: f64, // inches per column; a line is twice as high
 }
 
-/// Lowest and highest corner of points.
 fn extent(points: &[(f64, f64)]) -> ((f64, f64), (f64, f64)) {
     let fold = |with: fn(f64, f64) -> f64, from: f64| {
         points.iter().fold((from, from), |found, point| (with(found.0, point.0), with(found.1, point.1)))
@@ -124,7 +111,6 @@ impl Sheet {
         (y < self.signs.len() && x < self.signs[y].len()).then_some((x, y))
     }
 
-    /// Draw the outline of a block.
     fn block(&mut self, (left, bottom): Place, (right, top): Place) {
         let width = usize::try_from(right - left + 1).unwrap_or(0);
         let border = |ends: [char; 2]| match width {
@@ -139,8 +125,8 @@ impl Sheet {
         self.put((left, top), &border(['┌', '┐']), false);
     }
 
-    /// Write the name of a block where it covers neither a name nor a mark: on its borders, inside, or next to
-    /// it. If there is no room, write a letter, which the legend explains.
+    /// Write the name of a block where it covers neither a name nor a mark; without room a letter, which the legend
+    /// explains.
     fn label(&mut self, name: &str, (left, bottom): Place, (right, top): Place) {
         let length = isize::try_from(name.chars().count()).unwrap_or(isize::MAX);
         let within = (top..=bottom).filter(|_| length < right - left).map(|line| ((left + 1, line), false));
@@ -202,24 +188,15 @@ fn whole(block: &Block) -> String {
     }
 }
 
-/// Combine two points axis by axis.
 fn each(with: fn(f64, f64) -> f64, one: [f64; 3], other: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| with(one[axis], other[axis]))
 }
 
 impl Drawing {
-    /// Read the cell from the text of a description.
-    ///
-    /// # Errors
-    /// The errors of the description.
     pub fn of(text: &str) -> Result<Self, String> {
         CellDescription::from_toml(text).map(|cell| Self::of_cell(&cell)).map_err(|error| error.to_string())
     }
 
-    /// Read the cell of a data directory.
-    ///
-    /// # Errors
-    /// The reason why it cannot be read.
     pub fn load(directory: &Path) -> Result<Self, String> {
         let path = directory.join("cell.toml");
         let cell = CellDescription::load(&path);
@@ -257,8 +234,7 @@ impl Drawing {
         Self { room: Room::new(cell), blocks: blocks.into_iter().filter(fits).collect() }
     }
 
-    /// Draw the cell with the arm at these joint angles, for a terminal of this width and a body of this
-    /// height. The two views are side by side if this makes them larger.
+    /// Draw the cell for a terminal of this width and a body of this height, with the views side by side if larger.
     #[must_use]
     pub fn sections(&self, joints: &Joints, width: usize, room: usize) -> Vec<Section> {
         let nearest = self.nearest(joints);
@@ -306,7 +282,6 @@ impl Drawing {
         [T3.forward_plate(joints).position.into(), T3.forward(joints).position.into()]
     }
 
-    /// The corners of all bodies, and the arm.
     fn points(&self, side: Side, joints: &Joints) -> Vec<(f64, f64)> {
         let corners = self.blocks.iter().flat_map(|(_, low, high)| [*low, *high]);
         corners.chain([[0.0; 3]]).chain(Self::hand(joints)).map(|point| side.of(point)).collect()

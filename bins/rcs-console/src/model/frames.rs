@@ -42,8 +42,7 @@ pub fn received(bytes: &[u8]) -> Vec<String> {
     })
 }
 
-/// The frames from the first byte on. Bytes that begin no frame are shown as they are: receivers discard them,
-/// or wait for the rest of a frame.
+/// The frames from the first byte on. Bytes that begin no frame are shown as they are.
 fn split(mut bytes: &[u8], frame: impl Fn(&[u8]) -> Option<(String, usize)>) -> Vec<String> {
     let mut found = Vec::new();
     while let Some((text, length)) = frame(bytes) {
@@ -69,7 +68,7 @@ mod tests {
     const HOME: [u8; 16] = [3, 0, 0, 0, 0, 0xE7, 0x68, 0xFD, 0x85, 0xDC, 0xD8, 0x34, 0xB7, 0, 0, 0x73];
 
     #[test]
-    fn frames_are_told_in_words() {
+    fn frames_are_described_as_text() {
         assert_eq!(sent(&HOME), ["go to X 0.00 Y -62.96 Z -6.35 in, D -90.00 E 134.95 R 0.00 deg"]);
         assert_eq!(sent(&[5]), ["re-start: report the position again"]);
         assert_eq!(received(&[6, 0x15]), ["ACK: understood", "NAK: not understood, send it again"]);

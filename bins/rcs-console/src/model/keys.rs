@@ -32,7 +32,6 @@ pub enum Key {
     Interrupt,
 }
 
-/// The action of the terminal after a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     Draw,
@@ -123,7 +122,6 @@ impl Model {
         Effect::Draw
     }
 
-    /// Limit the scrolling to the available lines: `up` above, `down` below.
     pub fn limit_scroll(&mut self, up: usize, down: usize) {
         let least = 0_isize.saturating_sub_unsigned(up);
         self.scroll = self.scroll.clamp(least, 0_isize.saturating_add_unsigned(down));
@@ -188,7 +186,6 @@ impl Model {
         (self.pane, self.scroll, self.shows_watch) = (Pane::Buffers, 0, true);
     }
 
-    /// Freeze or release the picture. The run continues in either case.
     fn freeze(&mut self, source: &dyn Source) {
         if source.about().state == State::Log {
             self.answer = Some("a log does not run: [ ] moves a tick, { } a second".to_owned());

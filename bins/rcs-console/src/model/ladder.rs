@@ -24,7 +24,6 @@ pub enum Item {
     Robot,
 }
 
-/// Connection of a line to the lines above it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Branch {
     Level,
@@ -38,7 +37,6 @@ pub enum Branch {
     LastBelow,
 }
 
-/// The lines from top to bottom.
 const LINES: [(Branch, Item); 16] = [
     (Branch::Level, Item::Workstation),
     (Branch::Level, Item::Process(ProcessId::Task)),
@@ -58,7 +56,6 @@ const LINES: [(Branch, Item); 16] = [
     (Branch::Level, Item::Robot),
 ];
 
-/// The marks in the first two columns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mark {
     /// The process reports a failure or an error.
@@ -91,18 +88,13 @@ pub struct Line {
     pub branch: Branch,
     pub mark: Mark,
     pub name: &'static str,
-    /// Command, in the manual's spelling; empty for none.
-    pub command: String,
-    /// Number of the command, if any.
-    pub number: Option<u32>,
+    pub command: String,     // in the manual's spelling; empty for none
+    pub number: Option<u32>, // of the command, if any
     pub status: String,
-    /// Number of the command to which the status belongs.
-    pub echo: Option<u32>,
+    pub echo: Option<u32>, // of the command to which the status belongs
     pub row: String,
-    /// Text of the row, in the manual's spelling.
-    pub text: String,
-    /// Seconds since the row fired; `None` for a row of this tick.
-    pub age: Option<f64>,
+    pub text: String,     // of the row, in the manual's spelling
+    pub age: Option<f64>, // since the row fired; `None` for a row of this tick
 }
 
 /// The ladder of a picture. `last` is the previous picture on the screen.
@@ -191,7 +183,6 @@ fn age(header: &Header) -> Option<f64> {
     Some(ticks as f64 * TICK_S)
 }
 
-/// The gripper on the robot, according to the id pins (VI.2).
 fn gripper_on(picture: &Picture) -> Option<ProcessId> {
     match picture.memory.quick_change.status.end_effector_id? {
         1 => Some(ProcessId::Grip),

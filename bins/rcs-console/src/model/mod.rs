@@ -78,7 +78,6 @@ impl Screen {
     }
 }
 
-/// A pane of the process screen. The one with the keyboard focus has the most lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pane {
     #[default]
@@ -145,8 +144,7 @@ impl Text {
 pub struct Section {
     pub title: String,
     pub lines: Vec<Text>,
-    /// Index of the line that must be visible if the section does not fit.
-    pub at: usize,
+    pub at: usize, // the line that must be visible if the section does not fit
 }
 
 impl Section {
@@ -172,19 +170,14 @@ pub enum Prompt {
 
 pub struct Model {
     pub screen: Screen,
-    /// True if the help page covers the screen.
-    pub help: bool,
+    pub help: bool, // the help page covers the screen
     pub process: ProcessId,
-    /// The pane with the keyboard focus.
-    pub pane: Pane,
+    pub pane: Pane, // with the keyboard focus
     /// First visible line of the pane, relative to its default position.
     pub scroll: isize,
-    /// Text that a line of a table or buffer must contain; empty for all lines.
-    pub filter: String,
-    /// The present text input, if any.
-    pub prompt: Option<Prompt>,
-    /// The tick on the screen.
-    pub place: Place,
+    pub filter: String,         // for lines of a table or buffer; empty for all
+    pub prompt: Option<Prompt>, // the present text input
+    pub place: Place,           // the tick on the screen
     /// Last tick whose messages have been acknowledged.
     pub acknowledged: u64,
     /// Answer to the last key, if it had no other effect.
@@ -194,19 +187,16 @@ pub struct Model {
     pub robot_elsewhere: bool,
     /// True if the run ends when this console quits (`rcs-run --console`).
     pub ends_run: bool,
-    /// The operator's requests; `None` on a console without `--operate`.
-    pub operating: Option<Operating>,
+    pub operating: Option<Operating>, // `None` without `--operate`
     pub terminal: BoardTerminal,
     pub watch: Vec<String>,
     /// True if the process screen shows the watched fields instead of the buffers.
     pub shows_watch: bool,
-    /// The drawing of the cell screen, if it is on.
-    pub drawing: Option<Drawing>,
+    pub drawing: Option<Drawing>, // of the cell screen, if it is on
     /// True if the process screen shows the table's source text.
     pub shows_source: bool,
     pub picture: Option<Picture>,
-    /// The previous picture on the screen.
-    pub last: Option<Picture>,
+    pub last: Option<Picture>, // the previous picture on the screen
 }
 
 impl Model {
@@ -242,7 +232,6 @@ impl Model {
         *self = Self { place, process: process.unwrap_or(self.process), ..Self::new(self.screen) };
     }
 
-    /// Get the picture to show from the source.
     pub fn take(&mut self, source: &dyn Source) {
         let Some((first, last)) = source.range() else { return };
         let wanted = match self.place {
@@ -278,7 +267,6 @@ impl Model {
         self.picture.as_ref().map_or(0, |picture| picture.tick.0)
     }
 
-    /// True if the run accepts requests of this console.
     #[must_use]
     pub fn operates(&self) -> bool {
         self.operating.as_ref().is_some_and(|operating| operating.lost.is_none())
@@ -296,7 +284,6 @@ impl Model {
         self.operating.as_ref()?.take_over
     }
 
-    /// The joystick box as the controller reads it.
     #[must_use]
     pub fn joystick(&self) -> JoystickBox {
         self.picture.as_ref().map_or_else(JoystickBox::default, |picture| picture.external.devices.joystick)

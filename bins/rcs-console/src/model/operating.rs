@@ -46,8 +46,7 @@ impl Model {
         true
     }
 
-    /// Handle a key of the panel screen: of the joystick box, or of the list. The first Enter names the key at
-    /// the cursor, the second one presses it, so that an accidental Enter has no effect.
+    /// Handle a key of the panel screen. The first Enter names the key at the cursor, the second one presses it.
     fn work_a_panel(&mut self, key: Key, was_chosen: bool) -> bool {
         let (frame, velocity) = (self.joystick().frame, self.joystick().velocity);
         let knob = |velocity: u16| format!("joystick velocity {velocity}");
@@ -143,16 +142,12 @@ impl Model {
     }
 }
 
-/// Change of the velocity knob by a key: a tenth of its range.
-const KNOB_STEP: u16 = KNOB_FULL / 10;
+const KNOB_STEP: u16 = KNOB_FULL / 10; // change of the velocity knob by a key: a tenth of its range
 /// Speed with the stick at full deflection and the velocity knob at its maximum, in/s (`levels::prim::manual`).
 const SPEED: f64 = 5.0;
-/// Acceleration of the stick's motion, in/s².
-const ACCELERATION: f64 = 10.0;
-/// Dead zone of the stick, as a share of its range.
-const PLAY: f64 = 0.03;
-/// Ticks per second.
-const TICKS: f64 = 25.0;
+const ACCELERATION: f64 = 10.0; // acceleration of the stick's motion, in/s²
+const PLAY: f64 = 0.03; // dead zone of the stick, as a share of its range
+const TICKS: f64 = 25.0; // ticks per second
 
 /// Deflection, as a share, and ticks for a motion of this length at full knob. The ramps at both ends cancel.
 fn stick(inches: f64) -> (f64, u32) {

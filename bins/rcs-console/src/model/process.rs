@@ -14,8 +14,8 @@ use crate::rcs_console::{
     story::{Doing, Story},
 };
 
-/// The table that decided last, with the fired row marked: a line with the row's conditions, a line with its
-/// action, then the rows. Lines without the text of the filter are omitted.
+/// The table that decided last, with the fired row marked and its conditions. Lines without the filter's text are
+/// omitted.
 #[must_use]
 pub fn table(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     let info = &Ladder::processes()[process.position()];

@@ -8,10 +8,8 @@ use crate::rcs_console::picture::Picture;
 const KEPT: usize = 200;
 pub const JOGS: [f64; 4] = [0.10, 0.50, 2.00, 0.02];
 
-/// The command that connects the Data System (V.4.1).
-const STARTUP: &str = "STARTUP";
+const STARTUP: &str = "STARTUP"; // the command that connects the Data System (V.4.1)
 /// The steps of Task's table STARTUP after the first, and the texts of the original terminal (IV.4.2 step 3).
-/// Pending updates are sent while it connects.
 const STAGES: [(&str, &str); 4] = [
     ("aborting", "Aborting..."),
     ("initiating", "Initiating..."),
@@ -25,7 +23,6 @@ pub struct Exchange {
     pub line: String,
     /// The answer, once it has arrived.
     pub answer: Option<Result<String, String>>,
-    /// Progress of the requested command, if any.
     pub stages: Vec<String>,
 }
 
@@ -62,16 +59,11 @@ pub struct Operating {
     /// Directory of the run's task data, once the run has answered.
     pub directory: Option<String>,
     pub outbox: Vec<String>,
-    /// The reason why the connection was lost.
-    pub lost: Option<String>,
-    /// Index of the jog length in [`JOGS`].
-    pub jog: usize,
-    /// Index of the panel key under the cursor.
-    pub cursor: usize,
-    /// True if the next F1 presses the emergency stop.
-    pub is_armed: bool,
-    /// True if the next Enter presses the panel key under the cursor.
-    pub is_chosen: bool,
+    pub lost: Option<String>, // why the connection was lost
+    pub jog: usize,           // index in [`JOGS`]
+    pub cursor: usize,        // index of the panel key
+    pub is_armed: bool,       // the next F1 presses the emergency stop
+    pub is_chosen: bool,      // the next Enter presses the panel key
     /// Number of requests by which the arrow keys of the prompt have gone back.
     pub back: usize,
     /// The question whether to take the command over, if it is open.
@@ -79,7 +71,6 @@ pub struct Operating {
 }
 
 impl Operating {
-    /// Record a sent request.
     pub fn sent(&mut self, number: u32, line: String) {
         if self.exchanges.len() == KEPT {
             self.exchanges.remove(0);
@@ -99,7 +90,6 @@ impl Operating {
         (self.count.saturating_sub(kept) + 1..).zip(&self.exchanges)
     }
 
-    /// Update the progress of the commands from a picture.
     pub fn look(&mut self, picture: &Picture) {
         self.exchanges.iter_mut().for_each(|exchange| exchange.follow(picture));
         if is_due(self.take_over, picture.tick) && self.outbox.is_empty() {
@@ -108,7 +98,6 @@ impl Operating {
         }
     }
 
-    /// Record an answer to a request or to a status request.
     pub fn answered(&mut self, number: u32, verdict: Result<String, String>) {
         match self.exchanges.iter_mut().rev().find(|exchange| exchange.number == number) {
             Some(exchange) => {
@@ -122,7 +111,6 @@ impl Operating {
         }
     }
 
-    /// True if the job waits for an operator.
     #[must_use]
     pub fn job_waits(&self) -> bool {
         self.status.starts_with("the job waits")

@@ -5,8 +5,7 @@ use rcs_core::tick::Tick;
 use super::{Key, Model, Section, Text, Tone};
 use crate::rcs_console::picture::Picture;
 
-/// Part of a refusal that offers to take the command over.
-const OFFER: &str = "`stand-alone` takes over";
+const OFFER: &str = "`stand-alone` takes over"; // part of a refusal that offers to take the command over
 const AGAIN: u64 = 25;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,8 +14,7 @@ pub enum TakeOver {
     Asks,
     /// The console waits for the end of the command in progress.
     Waits {
-        /// Tick of the last request.
-        since: Tick,
+        since: Tick, // tick of the last request
     },
 }
 

@@ -6,10 +6,8 @@ use levels::ladder::Ladder;
 use super::{Section, Text, Tone};
 use crate::rcs_console::picture::Picture;
 
-/// Files with decision tables, and their texts.
 static FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/tables.rs"));
 
-/// The complete source text of the last deciding table.
 #[must_use]
 pub fn section(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     let info = &Ladder::processes()[process.position()];

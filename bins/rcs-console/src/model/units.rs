@@ -1,5 +1,4 @@
-//! Units of the numbers in the buffers. The manual's interfaces use integers (docs/design/units.md); numbers that are
-//! not a length, angle, force or converter count have no unit.
+//! Units of the numbers in the buffers, which are integers as in the manual (docs/design/units.md).
 
 /// Ends of field names, from specific to general, with their units.
 const UNITS: [(&str, &str); 44] = [

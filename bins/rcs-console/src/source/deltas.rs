@@ -1,7 +1,5 @@
-//! The ticks of a log in memory: differences from tick to tick, and a whole image once per second, as in the file.
-//!
-//! A log of an hour has 90,000 ticks. Whole images would take half a gigabyte. Differences take a fiftieth of
-//! it, and any tick is decoded in at most 25 steps.
+//! The ticks of a log in memory: differences from tick to tick, and a whole image once per second. They take a fiftieth
+//! of whole images, and any tick is decoded in at most 25 steps.
 
 use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{
@@ -13,17 +11,14 @@ use record::{delta::Codec, reader::LoggedTick, writer::FULL_SET};
 
 use crate::rcs_console::picture::{Picture, Timing};
 
-/// A stored tick.
 struct Kept {
     tick: Tick,
-    /// True if the deltas are relative to zeros.
-    full: bool,
+    full: bool, // true if the deltas are relative to zeros
     external: Vec<u8>,
     memory: Vec<u8>,
     timing: Option<Timing>,
 }
 
-/// The byte images of a tick.
 struct Images {
     external: Vec<u8>,
     memory: Vec<u8>,
@@ -72,7 +67,6 @@ impl Deltas {
         Ok(picture)
     }
 
-    /// First and last tick.
     pub fn range(&self) -> Option<(u64, u64)> {
         Some((self.kept.first()?.tick.0, self.kept.last()?.tick.0))
     }
@@ -109,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn every_tick_comes_back() {
+    fn stored_ticks_round_trip() {
         let mut deltas = Deltas::new();
         for tick in (1..=60).filter(|tick| *tick != 31) {
             let mut external = ExternalInputs::default();

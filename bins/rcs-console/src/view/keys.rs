@@ -20,7 +20,6 @@ pub fn line(model: &Model, state: State, width: usize) -> String {
     };
     let mut line = String::new();
     for key in stops.iter().chain(keys(model, state, takes_requests)) {
-        // A key without room is on the help page.
         if line.chars().count() + 2 + key.chars().count() < width {
             let gap = if line.is_empty() { " " } else { "  " };
             line = line + gap + key;

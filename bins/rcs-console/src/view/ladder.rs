@@ -19,16 +19,12 @@ use crate::rcs_console::{
     source::Source,
 };
 
-/// Least number of columns for the text of a row.
-const LEAST_TEXT: usize = 24;
-/// Columns for a command on the smallest terminal.
-const COMMAND: usize = 19;
+const LEAST_TEXT: usize = 24; // least number of columns for the text of a row
+const COMMAND: usize = 19; // columns for a command on the smallest terminal
 /// Smallest body with both hierarchy and process: columns, and two lines per process or neighbour.
 const BESIDE: (usize, usize) = (120, 33);
-/// Columns of the hierarchy without the row, if the process is shown too.
-const HIERARCHY: usize = 43;
-/// Least and most columns for its row.
-const ROW: (usize, usize) = (15, 30);
+const HIERARCHY: usize = 43; // columns of the hierarchy without the row, if the process is shown too
+const ROW: (usize, usize) = (15, 30); // least and most columns for its row
 
 struct Widths {
     command: usize,
@@ -46,7 +42,6 @@ impl Widths {
     }
 }
 
-/// The lines of the screen's body.
 pub fn body(
     model: &Model,
     picture: &Picture,
@@ -121,7 +116,6 @@ fn beside(
         .collect()
 }
 
-/// The parts of a line with their own styles.
 fn spans(line: Line<'static>) -> impl Iterator<Item = Span<'static>> {
     let style = line.style;
     line.spans.into_iter().map(move |span| {

@@ -1,7 +1,6 @@
 //! Draws the model as a frame of text.
 //!
-//! Line 1 has the screens, lines 2 to 4 the state band, the last line the keys, and the one before it the
-//! latest news. A mark or a word always has the same meaning as a colour.
+//! Line 1 has the screens, lines 2 to 4 the state band, the last line the keys, and the one before it the news.
 
 mod band;
 mod help;
@@ -36,8 +35,7 @@ pub use waiting::Waiting;
 /// Smallest size of a terminal: columns and lines.
 pub const LEAST: (u16, u16) = (80, 24);
 const BAND: usize = 3;
-/// Lines above and below the body.
-const FRAME: usize = BAND + 3;
+const FRAME: usize = BAND + 3; // lines above and below the body
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
@@ -92,7 +90,6 @@ pub enum Scene<'a> {
     Waiting(&'a Waiting),
 }
 
-/// Draw the screen. Returns the limits of scrolling.
 pub fn draw(frame: &mut Frame<'_>, scene: &Scene<'_>, look: Look) -> Reach {
     let area = frame.area();
     let (lines, reach) = compose(scene, look, area.width.into(), area.height.into());
@@ -266,7 +263,6 @@ fn said_last(operating: &Operating) -> Option<(Tone, String)> {
     }
 }
 
-/// The ending of a run that has published no result.
 fn ending(model: &Model) -> String {
     let Some(picture) = &model.picture else { return "before its first tick".to_owned() };
     let status = &picture.memory.task.status;

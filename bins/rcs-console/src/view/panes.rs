@@ -13,8 +13,7 @@ use crate::rcs_console::{
     source::Source,
 };
 
-/// Least number of lines of a pane without the keyboard focus.
-const LEAST: usize = 2;
+const LEAST: usize = 2; // least number of lines of a pane without the keyboard focus
 
 /// The process screen: table, rows, buffers. The pane with the keyboard focus gets the most lines.
 pub fn process(
@@ -82,7 +81,6 @@ pub fn column(
         all.extend(body(section, width));
     }
     let mut reach = Reach::default();
-    // One line shows the number of hidden lines.
     let height = if all.len() > room { room - 1 } else { room };
     let start = scrolled(0, model.scroll, all.len(), height, &mut reach);
     let length = all.len();
@@ -113,7 +111,6 @@ pub fn list(sections: &[Section], look: Look, width: usize, room: usize) -> Vec<
     lines
 }
 
-/// The lines of a section, wrapped to the width.
 fn body(section: &Section, width: usize) -> Vec<Text> {
     let wrapped = |line: &Text| {
         let tone = line.tone;

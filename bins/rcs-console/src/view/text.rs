@@ -13,8 +13,7 @@ pub fn fit(text: &str, width: usize) -> String {
     cut
 }
 
-/// Text in lines of at most `width` columns. Further lines are indented two columns more than the text, after
-/// blanks and marks.
+/// Text in lines of at most `width` columns. Further lines are indented two columns more.
 pub fn wrap(text: &str, width: usize) -> Vec<String> {
     let indent = text.chars().take_while(|sign| " >~!".contains(*sign)).count() + 2;
     let mut lines = Vec::new();
@@ -37,14 +36,12 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
     }
 }
 
-/// A rule that contains a title.
 pub fn rule(title: &str, width: usize) -> String {
     let head = if title.is_empty() { String::new() } else { format!("─ {} ", fit_short(title, width)) };
     let rest = width.saturating_sub(head.chars().count());
     head + &"─".repeat(rest)
 }
 
-/// A title shortened to leave room for the rule.
 fn fit_short(title: &str, width: usize) -> String {
     let room = width.saturating_sub(4);
     if title.chars().count() > room { fit(title, room) } else { title.to_owned() }

@@ -11,16 +11,12 @@ use crate::rcs_console::model::Tone;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Waiting {
-    /// Runs of this user in progress.
-    pub runs: Vec<RunName>,
-    /// Index of the run under the cursor.
-    pub cursor: usize,
+    pub runs: Vec<RunName>, // of this user, in progress
+    pub cursor: usize,      // index of a run
     /// The boards of the selected run while it waits for boards, with true for those that have joined (IV.2.1, IV.2.8).
     pub boards: Vec<(Board, bool)>,
-    /// State of that run before its first tick, as a phrase after its name.
-    pub phase: Option<String>,
-    /// The reason why the last run could not be shown.
-    pub refused: Option<String>,
+    pub phase: Option<String>,   // before its first tick, as a phrase after its name
+    pub refused: Option<String>, // why the last run could not be shown
 }
 
 impl Waiting {

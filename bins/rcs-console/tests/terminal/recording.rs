@@ -1,9 +1,5 @@
-//! The start-up of the manual (IV.3.3) and a taught point (III.3.3), with an operator's keys; and a recording
-//! of it for `asciinema play`:
-//!
-//! ```sh
-//! RCS_RECORDING=docs/console.cast cargo test --release -p programs --test console recording
-//! ```
+//! The start-up of the manual (IV.3.3) and a taught point (III.3.3) with an operator's keys, and a recording for
+//! `asciinema play`: `RCS_RECORDING=docs/console.cast cargo test --release -p programs --test console recording`.
 
 use std::{env, fmt::Write as _};
 
@@ -12,12 +8,9 @@ use sessions::operator::Client;
 
 use super::*;
 
-/// The last step of IV.3.3.
-const LAST: &str = "19b";
-/// The step that the operator must confirm.
-const LOOK: &str = "6";
-/// Time after which Enter is repeated because the robot controller was not ready for its key; ten times as long
-/// in a recording.
+const LAST: &str = "19b"; // the last step of IV.3.3
+const LOOK: &str = "6"; // the step that the operator must confirm
+/// Time after which Enter is repeated because the robot controller was not ready; ten times as long in a recording.
 const AGAIN: Duration = Duration::from_millis(300);
 
 /// A recording in version 2 of asciicast: a header, then one line per piece of output.
@@ -51,7 +44,6 @@ fn step_under_cursor(screen: &str) -> Option<(String, String)> {
     Some((part(2, 8), part(8, 13)))
 }
 
-/// Carry out the steps of the open procedure, in order.
 fn do_all_steps(console: &mut Terminal, pause: Duration) {
     let again = if pause.is_zero() { AGAIN } else { 10 * AGAIN };
     let mut done = Vec::new();

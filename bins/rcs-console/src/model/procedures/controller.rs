@@ -1,5 +1,4 @@
-//! Steps at the robot controller that several procedures share (III.6, IV.3.1, IV.3.3, IV.3.4): text, requests
-//! and warning. Each procedure numbers them itself.
+//! Steps at the robot controller that several procedures share (III.6, IV.3.1, IV.3.3, IV.3.4).
 
 use super::{Ask::Line, Ask::ReleaseEStops, Condition, Show, Step, event, state};
 

@@ -1,5 +1,3 @@
-//! The keys of the procedure screen.
-
 use super::{Mark, Sight, Track};
 use crate::rcs_console::{
     model::{Key, Model, Prompt},
@@ -43,7 +41,6 @@ impl Model {
         true
     }
 
-    /// Mark the step as confirmed by the operator.
     fn say(&mut self, source: &dyn Source) {
         let Some(picture) = &self.picture else { return };
         let cell = source.cell(picture.tick.0);
@@ -79,7 +76,6 @@ impl Model {
         }
     }
 
-    /// Send the requests of the step at the cursor, after its warning.
     fn do_a_step(&mut self, source: &dyn Source) {
         let Some(picture) = &self.picture else { return };
         let cell = source.cell(picture.tick.0);
@@ -101,7 +97,6 @@ impl Model {
     }
 }
 
-/// Text of a note about a step.
 fn note(track: &Track, what: &str) -> String {
     let step = track.step().map_or(("", ""), |step| (step.id, step.text));
     format!("{} {}: {}: {what}", track.procedure.section, step.0, step.1)

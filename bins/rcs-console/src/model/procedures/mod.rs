@@ -1,9 +1,7 @@
 //! Procedures (IV): checklists that detect when a step is done.
 //!
-//! A procedure is a table of steps. A step has its number in the manual, a text, a [`Watch`] with the
-//! conditions that complete it, and requests to the run that execute it. The console keeps checking: a step
-//! whose state is lost loses its mark, until the step that ends the state is done. The operator confirms states
-//! that the console cannot observe, because the robot is at a port or no device shows them.
+//! A step has its number in the manual, a text, a [`Watch`] with the conditions that complete it, and requests that
+//! execute it. A step whose state is lost loses its mark. The operator confirms states that the console cannot observe.
 
 mod condition;
 mod controller;
@@ -22,27 +20,22 @@ pub use self::{
     show::Show,
 };
 
-/// A procedure of the manual.
 #[derive(Debug)]
 pub struct Procedure {
-    /// Section of the manual.
-    pub section: &'static str,
+    pub section: &'static str, // of the manual
     pub title: &'static str,
-    /// The steps, in order.
     pub steps: &'static [Step],
 }
 
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     pub id: &'static str,
-    /// The required action or state.
-    pub text: &'static str,
-    /// Additional information; empty for none.
-    pub how: &'static str,
+    pub text: &'static str, // the required action or state
+    pub how: &'static str,  // additional information; empty for none
     /// How the console detects that the step is done.
     pub watch: Watch,
-    /// Number of the step that ends this state. Once that step has sent its requests or is done, this step
-    /// keeps its mark.
+    /// Number of the step that ends this state. Once that step has sent its requests or is done, this one keeps its
+    /// mark.
     pub until: &'static str,
     /// Requests that Enter sends, in order.
     pub ask: &'static [Ask],
@@ -52,7 +45,6 @@ pub struct Step {
     pub show: Show,
 }
 
-/// How the console detects that a step is done.
 #[derive(Clone, Copy, Debug)]
 pub enum Watch {
     /// All conditions hold, and must continue to hold.

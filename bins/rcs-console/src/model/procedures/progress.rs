@@ -14,7 +14,6 @@ pub enum Mark {
     /// Not done, as far as the console can detect.
     #[default]
     Open,
-    /// Done, as the console detects.
     Seen,
     /// Done in this tick; the console no longer checks it.
     Done(Tick),
@@ -51,10 +50,8 @@ pub struct Track {
     pub procedure: &'static Procedure,
     pub marks: Vec<Mark>,
     pub cursor: usize,
-    /// The state when the first open step began, or when its requests were sent.
     pub begun: Begun,
-    /// Index of the step to which `begun` belongs.
-    current: Option<usize>,
+    current: Option<usize>, // index of the step to which `begun` belongs
     /// True if the warning has been shown; the next Enter sends the requests of the step at the cursor.
     pub is_warned: bool,
 }

@@ -4,15 +4,11 @@ use interfaces::{ProcessId, data_base::Connection};
 
 use super::{Ask::Line, Condition, Procedure, Show, Step, Watch, controller, event, real, said, state, step};
 
-/// The processes that command each other.
 const LEVELS: &[ProcessId] = &[ProcessId::Task, ProcessId::Subtask, ProcessId::Emove, ProcessId::Prim];
 /// The processes that have PAUSE also without a link to the robot.
 const PAUSING: &[ProcessId] = &[ProcessId::Task, ProcessId::Subtask, ProcessId::Emove];
-/// The processes of board 2.
-const BOARD_2: &[ProcessId] = &[ProcessId::Emove, ProcessId::Prim];
-/// The processes of board 6.
-const BOARD_6: &[ProcessId] = &[ProcessId::Task, ProcessId::Subtask];
-/// The processes of boards 4, 2 and 8.
+const BOARD_2: &[ProcessId] = &[ProcessId::Emove, ProcessId::Prim]; // the processes of board 2
+const BOARD_6: &[ProcessId] = &[ProcessId::Task, ProcessId::Subtask]; // the processes of board 6
 const BELOW: &[ProcessId] = &[
     ProcessId::T3i,
     ProcessId::Emove,

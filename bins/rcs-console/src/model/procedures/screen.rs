@@ -3,8 +3,7 @@
 use super::{ALL, Ask, Progress, Step, Track, condition::Sight, progress::Mark};
 use crate::rcs_console::model::{Section, Text, Tone};
 
-/// Columns before the text of a step.
-const INDENT: &str = "              ";
+const INDENT: &str = "              "; // columns before the text of a step
 
 /// The list, or the open procedure.
 #[must_use]
@@ -52,7 +51,6 @@ fn steps(track: &Track, sight: &Sight<'_>) -> Section {
     Section { title, lines, at }
 }
 
-/// Details of the step at the cursor.
 fn details(step: &Step, mark: &Mark, sight: &Sight<'_>) -> Vec<Text> {
     let mut lines: Vec<Text> = step.show.lines(sight);
     let mut say = |tone, text: String| lines.push(Text::new(tone, text));

@@ -6,7 +6,6 @@ use interfaces::{
 use super::condition::{HOME, Sight, TOLERANCE, largest, rows};
 use crate::rcs_console::model::{Text, Tone, cell};
 
-/// The state of the cell that is shown with a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Show {
     Nothing,
@@ -116,7 +115,6 @@ fn hand(sight: &Sight<'_>) -> Text {
     Text::plain(format!("hand at {x:.2} {y:.2} {z:.2} in{way}{rest}"))
 }
 
-/// Converts 0.01 in to inches.
 fn inches(hundredths: i32) -> f64 {
     f64::from(hundredths) / 100.0
 }

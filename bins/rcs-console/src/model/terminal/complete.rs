@@ -1,5 +1,4 @@
-//! Tab completion: the possible words at a position of a line, from the words of the terminals, the requests, and the
-//! names of the task data.
+//! Tab completion, from the words of the terminals, the requests, and the names of the task data.
 
 use std::{collections::BTreeSet, path::Path};
 
@@ -10,7 +9,6 @@ use interfaces::{
 };
 use taskdata::load::{BlockNumber, Source, Store, source::blocks, verdict::TASK_COMMANDS};
 
-/// The names, blocks and jobs of a run's task data.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names {
     pub objects: Vec<String>,
@@ -58,8 +56,7 @@ impl Names {
     }
 }
 
-/// The words that can follow the first words of a line, except those of the station ([`following`]). `*` in an entry
-/// matches any word.
+/// The words that can follow the first words of a line, except those of the station ([`following`]); `*` matches any.
 static FOLLOWING: [(&[&str], &[&str]); 14] = [
     (&["job"], &["wait", "go", "skip"]),
     (&["db-done"], ON_OFF),
@@ -103,7 +100,6 @@ const REQUESTS: [&str; 17] = [
 /// Words that can follow one or more numbers.
 const BEHIND_NUMBERS: [&str; 7] = ["EDIT", "LINE-LOAD", "LIST", "LOAD", "OFFSET", "OLOAD", "TEACH"];
 
-/// All words that can follow these words.
 fn candidates(words: &[&str], names: &Names, terminal: &[&str]) -> Vec<String> {
     let owned = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
     let blocks_at = |offset: Option<u32>| {
@@ -149,8 +145,8 @@ fn candidates(words: &[&str], names: &Names, terminal: &[&str]) -> Vec<String> {
     }
 }
 
-/// The candidates for the next field of a command: object, then grip, location and sector of source and destination,
-/// then location and sector of the end (V.4.1).
+/// The candidates for the next field of a command (V.4.1): object, then grip, location and sector of source and
+/// destination, then location and sector of the end.
 fn field(fields: &[&str], names: &Names) -> Vec<String> {
     let null = || "--".to_owned();
     match fields.len() {

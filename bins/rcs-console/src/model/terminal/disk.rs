@@ -14,8 +14,7 @@ impl Interpreter<'_> {
         Ok(())
     }
 
-    /// `n TEACH name` and `n TEACH name pose`: write the recorded pose as a form, or as a movetable relative to a named
-    /// pose.
+    /// `n TEACH name` and `n TEACH name pose`: write the recorded pose as a form, or as a movetable relative to a pose.
     pub(super) fn teach(&mut self, behind: &[&str]) -> Result<usize, String> {
         let number = BlockNumber { offset: self.board.offset, number: self.pop("n TEACH name")? };
         let mut names = behind.iter().map(|name| (*name).to_owned());

@@ -6,8 +6,7 @@
 //!               └──────────────Esc─────────────────────────┘
 //! ```
 //!
-//! Only the lines of the block are changed in its file; comments (`%%`) and other blocks stay unchanged. A file
-//! that has changed in the meantime is not overwritten.
+//! Only the lines of the block are changed in its file. A file that has changed in the meantime is not overwritten.
 
 use std::{
     fs, io,
@@ -28,10 +27,8 @@ const ABOUT: usize = 2;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Message {
-    /// Line of the block; `None` if the message is about another place.
-    line: Option<usize>,
-    /// True for an error, false for a warning.
-    is_error: bool,
+    line: Option<usize>, // line of the block; `None` if the message is about another place
+    is_error: bool,      // true for an error, false for a warning
     text: String,
 }
 
@@ -39,14 +36,12 @@ struct Message {
 enum Stage {
     /// The lines, with the messages of the last check.
     Text,
-    /// The changes that F2 would write.
     Diff,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wish {
     None,
-    /// Close the editor without writing.
     Close,
     Write,
     Say(&'static str),
@@ -56,13 +51,10 @@ pub enum Wish {
 pub struct Editor {
     number: BlockNumber,
     path: PathBuf,
-    /// Text of the file when the editor was opened.
-    before: String,
-    /// All texts of the task data, and the index of the edited file among them.
-    sources: Vec<Source>,
+    before: String,       // text of the file when the editor was opened
+    sources: Vec<Source>, // all texts of the task data, and the index of the edited file among them
     at: usize,
-    /// The lines when the editor was opened.
-    old: Vec<String>,
+    old: Vec<String>, // the lines when the editor was opened
     lines: Vec<String>,
     row: usize,
     column: usize,
@@ -74,10 +66,7 @@ pub struct Editor {
 pub type Refused = String;
 
 impl Editor {
-    /// Open a block of the files under a directory, whose texts are given.
-    ///
-    /// # Errors
-    /// A message with the reason.
+    /// Open a block of the files under a directory, whose texts are given. Errors: a message with the reason.
     pub fn begin(number: BlockNumber, directory: &Path, sources: &[Source]) -> Result<Self, Refused> {
         let holds = |source: &Source| blocks(0, source).0.iter().any(|block| block.number == number);
         let at = sources.iter().rposition(holds).ok_or_else(|| format!("there is no {number}"))?;
@@ -109,9 +98,6 @@ impl Editor {
     }
 
     /// Insert a form. It replaces the one with the same last words, or follows the last line.
-    ///
-    /// # Errors
-    /// A message if the block has no room.
     pub fn with_form(mut self, form: &[String], about: Vec<String>) -> Result<Self, Refused> {
         let words = |line: &str| line.split_whitespace().rev().take(3).map(str::to_owned).collect::<Vec<_>>();
         let key = |line: &str| {
@@ -204,7 +190,6 @@ impl Editor {
         Wish::None
     }
 
-    /// Check all data with the block. Without errors, the diff is shown.
     fn check(&mut self) -> Wish {
         if self.changes().is_empty() {
             return Wish::Say("nothing has changed");
@@ -239,10 +224,7 @@ impl Editor {
         Wish::None
     }
 
-    /// Write the block into the file.
-    ///
-    /// # Errors
-    /// A message with the reason. The file is then unchanged.
+    /// Write the block into the file. Errors: a message with the reason. The file is then unchanged.
     pub fn write(&self) -> Result<(), String> {
         let told = |error: io::Error| format!("{}: {error}", self.path.display());
         if fs::read_to_string(&self.path).map_err(told)? != self.before {
@@ -254,14 +236,12 @@ impl Editor {
         replace_text(&self.path, &self.text()).map_err(told)
     }
 
-    /// Number, old and new text of each changed line.
     fn changes(&self) -> Vec<(usize, &str, &str)> {
         let pairs = self.old.iter().zip(&self.lines).enumerate();
         let pairs = pairs.map(|(at, (old, new))| (at, old.trim_end(), new.trim_end()));
         pairs.filter(|(_, old, new)| old != new).collect()
     }
 
-    /// The text of the file with the present lines.
     fn text(&self) -> String {
         let source = Source { name: String::new(), text: self.before.as_str().into() };
         let (found, _) = blocks(0, &source);
@@ -291,7 +271,6 @@ impl Editor {
         text
     }
 
-    /// The editor as text, and its present keys.
     #[must_use]
     pub fn sections(&self) -> Vec<Section> {
         let title = format!("{}, {}", self.number, self.path.display());
@@ -335,7 +314,6 @@ impl Editor {
         shown
     }
 
-    /// The request that loads the block.
     #[must_use]
     pub fn request(&self) -> String {
         format!("load {} {}", self.number.offset, self.number.number)

@@ -24,8 +24,7 @@ pub static AREAS: [(u32, &str, &str); 11] = [
     (27_000, "Graphics", "this program, screen 1"),
 ];
 
-/// Largest number of results of a search.
-const FOUND: usize = 12;
+const FOUND: usize = 12; // largest number of results of a search
 
 /// Blocks, which are read at the first request.
 #[derive(Default)]
@@ -48,7 +47,6 @@ impl Library {
         Self { read: Some(sources), ..Self::default() }
     }
 
-    /// The directory; empty for blocks from another source.
     #[must_use]
     pub fn directory(&self) -> &Path {
         &self.directory
@@ -93,7 +91,6 @@ impl Library {
         })
     }
 
-    /// The numbers of the blocks of an area.
     pub fn numbers(&mut self, offset: u32) -> Vec<u32> {
         let mut numbers: Vec<u32> = self
             .sources()

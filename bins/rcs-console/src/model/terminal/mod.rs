@@ -30,13 +30,10 @@ pub use self::{screen::sections, words::known};
 
 /// The boards of the terminals (IV.2.2).
 pub const BOARDS: [u8; 6] = [0, 2, 4, 6, 8, 12];
-/// Number of typed lines that are kept.
-const KEPT: usize = 100;
-/// The characters, in addition to digits, that are keys on this screen while the run takes requests. All others
-/// begin a line.
+const KEPT: usize = 100; // number of typed lines that are kept
+/// The characters, in addition to digits, that are keys on this screen; all others begin a line.
 const KEYS: &str = " !:?[]{}";
 
-/// The mode of a terminal (IV.2.6).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
     #[default]
@@ -50,9 +47,7 @@ pub struct Board {
     pub mode: Mode,
     /// Offset of the area for LIST and LOAD.
     pub offset: u32,
-    /// The last vocabulary.
     pub vocabulary: &'static str,
-    /// The last show word.
     pub shown: Option<&'static ShowWord>,
     /// The last variable shown, if it can be written.
     pub variable: Option<Variable>,
@@ -90,7 +85,6 @@ impl Board {
         Variable::ALL.iter().copied().filter(move |variable| variable.owner().board() == number)
     }
 
-    /// The buffers that its processes read and write.
     fn buffers(&self) -> Vec<&'static str> {
         let mut found: Vec<_> = self.processes().map(ProcessId::field).collect();
         match self.number {
@@ -109,18 +103,15 @@ struct Typed {
     board: u8,
     line: String,
     said: Vec<Text>,
-    /// Number of earlier requests.
-    after: u64,
+    after: u64, // number of earlier requests
 }
 
 #[derive(Default)]
 pub struct BoardTerminal {
     pub board: Board,
     pub library: Library,
-    /// The block in the editor, if any.
     pub editor: Option<Editor>,
-    /// The block that was listed last; F2 opens it.
-    listed: Option<BlockNumber>,
+    listed: Option<BlockNumber>, // the block that was listed last; F2 opens it
     typed: Vec<Typed>,
 }
 
@@ -139,7 +130,6 @@ impl BoardTerminal {
 }
 
 impl Model {
-    /// Execute a typed line: words of the board, or a request in modern words.
     pub(super) fn enter(&mut self, line: &str) {
         let terminal = &mut self.terminal;
         let sent = self.operating.as_ref().map_or(0, Operating::count);
@@ -186,7 +176,6 @@ impl Model {
         runs.then(|| format!("board {board} runs: ^C stops it before its blocks are edited (IV.2.3)"))
     }
 
-    /// Open the editor, or show the reason why it cannot be opened.
     fn begin_edit(&mut self, number: BlockNumber) {
         if let Some(why) = self.cannot_edit() {
             self.answer = Some(why);
@@ -217,7 +206,6 @@ impl Model {
         }
     }
 
-    /// Handle a key of the editor. Returns false if no editor is open.
     pub(super) fn edit(&mut self, key: Key) -> bool {
         let Some(editor) = self.terminal.editor.as_mut().filter(|_| key != Key::F1) else { return false };
         match editor.key(key) {
@@ -229,7 +217,6 @@ impl Model {
         true
     }
 
-    /// Write the block, and request its load.
     fn write_block(&mut self) {
         if let Some(why) = self.cannot_edit() {
             self.answer = Some(why);
@@ -258,8 +245,7 @@ impl Model {
         }
     }
 
-    /// Handle a key that only the terminal has, or begin a line with it if the run takes requests. Returns
-    /// false for other keys.
+    /// Handle a key that only the terminal has, or begin a line with it. Returns false for other keys.
     pub(super) fn work_the_terminal(&mut self, key: Key, runs: bool) -> bool {
         let is_recording = self.picture.as_ref().is_some_and(|picture| picture.memory.prim.status.recording);
         let board = &mut self.terminal.board;

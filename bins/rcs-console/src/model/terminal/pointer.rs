@@ -1,5 +1,4 @@
-//! Show mode follows a pointer: it shows the name and values of the record that a variable such as `pose-^-in`
-//! refers to (IV.2.6, VII.1).
+//! Show mode follows a pointer, such as `pose-^-in`, to its record (IV.2.6, VII.1).
 
 use geometry::{movetable::System, pose::Pose};
 use interfaces::{CommonMemory, pose_range};
@@ -68,7 +67,6 @@ fn changing(memory: &CommonMemory, number: u32) -> Option<Vec<String>> {
     Some(named(&name, &nine(pose)))
 }
 
-/// A record of the task data.
 fn of_data(file: File, number: u32, data: &TaskData<'_>) -> Option<Vec<String>> {
     match file {
         File::Pose => {

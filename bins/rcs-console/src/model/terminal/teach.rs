@@ -1,5 +1,4 @@
-//! Teaching: a recorded pose becomes a form in a block (III.3.3, VII.1, VII.2). The editor opens with the form, and
-//! with the arm's joints in the pose.
+//! Teaching: a recorded pose becomes a form in a block (III.3.3, VII.1, VII.2), which the editor shows with the joints.
 
 use std::path::Path;
 
@@ -13,29 +12,24 @@ use taskdata::load::{BlockNumber, Source, Store};
 use super::editor::Editor;
 use crate::rcs_console::picture::Picture;
 
-/// Name of the cell description in a data directory.
-const CELL: &str = "cell.toml";
+const CELL: &str = "cell.toml"; // name of the cell description in a data directory
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lesson {
     pub number: BlockNumber,
-    /// The name of the pose or movetable.
     pub name: String,
     /// The named pose to which the movetable is relative; `None` for a pose.
     pub relative: Option<String>,
 }
 
-/// The last recorded pose.
 fn recorded(picture: &Picture) -> Option<Pose> {
     let number = picture.memory.prim.status.recorded_pose?;
     picture.memory.changing_pose(number).copied()
 }
 
 impl Lesson {
-    /// Open the editor with the form.
-    ///
-    /// # Errors
-    /// A message if no pose was recorded, the robot cannot reach it, or the block has no room.
+    /// Open the editor with the form. Fails if no pose was recorded, the robot cannot reach it, or the block has no
+    /// room.
     pub fn begin(&self, picture: &Picture, directory: &Path, sources: &[Source]) -> Result<Editor, String> {
         let pose = recorded(picture).ok_or(
             "no pose has been recorded: drive the robot with the joystick box, and press its record button (m on \

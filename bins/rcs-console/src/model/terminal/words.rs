@@ -1,6 +1,5 @@
-//! The words of a board's terminal (IV.2, IV.3): numbers are pushed on a stack, and words pop them, as in
-//! FORTH. A word that affects the run becomes a request in modern words ([`operator`]); a word that shows a
-//! value is answered at once.
+//! The words of a board's terminal (IV.2, IV.3): numbers are pushed on a stack, and words pop them, as in FORTH. A word
+//! that affects the run becomes a request in modern words ([`operator`]).
 
 use interfaces::{ProcessId, operator::Variable};
 use levels::ladder::Ladder;
@@ -15,7 +14,6 @@ use crate::rcs_console::{
     picture::Picture,
 };
 
-/// Words that are not followed by a name.
 const WORDS: [&str; 17] = [
     "GO",
     "SSGO",
@@ -36,8 +34,7 @@ const WORDS: [&str; 17] = [
     "%",
 ];
 
-/// Words that execute a process once, such as PRIM-LEVEL (IV.3.3 step 13; VI.2, VI.5). The others are not in
-/// the manual.
+/// Words that execute a process once, such as PRIM-LEVEL (IV.3.3 step 13; VI.2, VI.5); some are not in the manual.
 static LEVELS: [(&str, ProcessId, &str); 9] = [
     ("TASK-LEVEL", ProcessId::Task, "TASK"),
     ("SUBTASK-LEVEL", ProcessId::Subtask, "SUBTASK"),
@@ -62,7 +59,6 @@ pub struct Outcome {
 pub struct Interpreter<'a> {
     pub board: &'a mut Board,
     pub library: &'a mut Library,
-    /// The present picture of the run.
     pub picture: Option<&'a Picture>,
     pub last: Option<&'a Picture>,
     stack: Vec<u32>,
@@ -161,7 +157,6 @@ impl<'a> Interpreter<'a> {
         Ok(0)
     }
 
-    /// Execute a word that is the name of an entry.
     fn named(&mut self, word: &str) -> Result<usize, String> {
         if let Some((_, process, name)) = LEVELS.iter().find(|(level, ..)| *level == word) {
             self.on(process.board())?;
@@ -464,7 +459,6 @@ mod tests {
         bench.picture.memory.task.poses[1] = ChangingPose { number: Some(number), pose };
         let said = bench.said("pose-^-in");
         assert!(said.contains("T-POSE-2") && said.contains("      0    -7145    -1483"), "{said}");
-        // Records of the task data.
         let store = bench.library.store().unwrap();
         let data = store.view();
         let pose = data.pose_named(&Name10::clipped("TOOL-TRNS")).unwrap().number();
