@@ -52,7 +52,6 @@ pub enum Coupling {
     Misread,
 }
 
-/// The gripper exchange.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum ExchangeWork {
     /// No exchange is under way.

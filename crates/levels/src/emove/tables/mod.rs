@@ -102,7 +102,6 @@ pub struct Subordinates {
     pub vision: VisionAnswer,
 }
 
-/// Results of preprocess.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
     /// Contents of the command buffer.
@@ -128,7 +127,6 @@ pub struct StateVariables {
     pub situation: Situation,
 }
 
-/// The actions of the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// No new order.

@@ -17,7 +17,6 @@ pub enum EmoveRecord {
     Missing,
 }
 
-/// Task data of the holster of a gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum HolsterData {
     /// The data are complete.

@@ -54,7 +54,6 @@ pub struct MotionStart {
     pub leg: LegNow,
 }
 
-/// The start of a motion command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum MotionBeginning {
     /// Depart from the place where the robot is.

@@ -52,7 +52,6 @@ pub struct Lost {
     pub near: Near,
 }
 
-/// The return of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Return {
     /// Back along the recorded path.

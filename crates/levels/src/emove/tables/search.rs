@@ -2,7 +2,6 @@
 
 use rcs_core::{Actions, decision_table};
 
-/// The search for the robot's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Look {
     /// Do not search.

@@ -50,7 +50,6 @@ pub struct Tracking {
     pub step: TrackStep,
 }
 
-/// The change of the record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum TrackChange {
     /// No change.

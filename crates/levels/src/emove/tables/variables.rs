@@ -2,7 +2,6 @@
 
 use rcs_core::Plain;
 
-/// Knowledge of a fact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Knowledge {
     /// The fact is known.
@@ -26,7 +25,6 @@ pub enum Initialization {
     Over,
 }
 
-/// Progress of E-PAUSE.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Pause {
     /// The command is another one.
@@ -84,7 +82,6 @@ pub enum EmoveOpening {
     Sent,
 }
 
-/// The departure of the robot from its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Departure {
     /// The robot is at a known place, and no depart point is left.
@@ -95,7 +92,6 @@ pub enum Departure {
     Over,
 }
 
-/// The release of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum ReleaseWork {
     /// No release is under way.
@@ -147,7 +143,6 @@ pub enum Spread {
     Unknown,
 }
 
-/// The DEPC link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum EmoveLink {
     /// Prim does not command the robot.
@@ -156,7 +151,6 @@ pub enum EmoveLink {
     Up,
 }
 
-/// The motion of the fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum FingerMotion {
     /// The fingers have executed their last order, or it required no motion.
@@ -178,7 +172,6 @@ pub enum Tooling {
     GripFaulty,
 }
 
-/// Knowledge of the robot's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PlaceKnowledge {
     /// The robot is at a known location.
@@ -298,7 +291,6 @@ pub enum Readiness {
     Faulty,
 }
 
-/// The answer of vision to the last request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum VisionAnswer {
     /// No answer yet.

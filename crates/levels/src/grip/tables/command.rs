@@ -6,7 +6,6 @@ use rcs_core::{Actions, Plain, Variables, decision_table};
 use super::Attachment;
 use crate::execution::Course;
 
-/// The verdict of ACCEPT.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Acceptance {
     /// The command is accepted.
@@ -15,7 +14,6 @@ pub enum Acceptance {
     Refused,
 }
 
-/// The commanded opening.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TargetOpening {
     /// The open end of travel.
@@ -60,7 +58,6 @@ pub enum Adoption {
     Adopt,
 }
 
-/// The state variables of [`COMMAND`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Commanded {
     /// The decision of EXECUTE.
@@ -73,7 +70,6 @@ pub struct Commanded {
     pub target: TargetOpening,
 }
 
-/// The state variables of [`START`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Started {
     /// The event.

@@ -20,7 +20,6 @@ use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 use super::goals;
 use crate::execution::{Asked, EXECUTE};
 
-/// Step of all commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Step {
     /// Not started: the command is new, or waits for the calibration.
@@ -64,7 +63,6 @@ pub enum GripReach {
     Beyond,
 }
 
-/// The command in execution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum GripActivity {
     /// No command has arrived, or the last one has ended.
@@ -109,7 +107,6 @@ pub enum Sensors {
     Tripped,
 }
 
-/// The motion of the fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripMotion {
     /// They move, or have just come to rest.
@@ -169,7 +166,6 @@ pub enum Grasp {
     Crushing,
 }
 
-/// The air flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Plain)]
 pub enum AirFlow {
     /// 0.25 in/s.
@@ -180,7 +176,6 @@ pub enum AirFlow {
     Coarse,
 }
 
-/// The state variables of [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
     /// Whether the command is new.
@@ -235,7 +230,6 @@ pub struct Measured {
     pub right: f64,
 }
 
-/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
     pub arrival: Arrival,
@@ -256,7 +250,6 @@ pub enum GripDuty {
     Command,
 }
 
-/// The actions of Grip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// The valves stay as they are.

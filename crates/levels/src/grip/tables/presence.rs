@@ -60,7 +60,6 @@ pub enum Count {
     Restart,
 }
 
-/// The state variables of [`TOUCH`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Pads {
     /// Fingers whose strain gage reads a force.
@@ -71,7 +70,6 @@ pub struct Pads {
     pub potentiometer: Stillness,
 }
 
-/// The state variables of [`PRESENCE`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct GripContact {
     /// The readings.

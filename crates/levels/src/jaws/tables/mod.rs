@@ -22,7 +22,6 @@ use self::valves::Mated;
 use super::goals;
 use crate::execution::{Asked, EXECUTE};
 
-/// Step of all commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Step {
     /// Not begun.
@@ -31,7 +30,6 @@ pub enum Step {
     Move,
 }
 
-/// The motion of the fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum JawsMotion {
     /// They move, may not have started to, or do not press yet on the object.
@@ -62,7 +60,6 @@ pub enum Size {
     Other,
 }
 
-/// The state variables of [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
     /// Whether the command is new.
@@ -90,7 +87,6 @@ pub struct Situation {
     pub connection: GroupHealth,
 }
 
-/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
     pub arrival: Arrival,
@@ -108,7 +104,6 @@ pub struct StateVariables {
     pub velocity: f64,
 }
 
-/// The actions of V-Grip and Tool-Grip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// The valves stay as they are.

@@ -32,7 +32,6 @@ pub enum Closing {
     Off,
 }
 
-/// The state variables of [`PRESENCE`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct JawReading {
     /// The readings.

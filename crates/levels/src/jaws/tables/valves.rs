@@ -24,7 +24,6 @@ pub enum Air {
     Open,
 }
 
-/// The state variables of [`VALVES`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Supply {
     /// The gripper on the ring.

@@ -210,7 +210,6 @@ pub enum PrimMissing {
     Limits,
 }
 
-/// The state variables of [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Default, Variables)]
 pub struct Request {
     /// Whether the command is new.
@@ -219,7 +218,6 @@ pub struct Request {
     pub missing: PrimMissing,
 }
 
-/// The state variables of [`attend::ATTEND`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Attendance {
     /// The decision of EXECUTE.
@@ -274,7 +272,6 @@ pub struct Situation {
     pub samples: Samples,
 }
 
-/// The state variables of [`path_clock::PATH_CLOCK`] and [`record_pose::RECORD_POSE`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Path {
     /// The first command to T3I.
@@ -287,7 +284,6 @@ pub struct Path {
     pub button: Button,
 }
 
-/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
     pub arrival: Arrival,
@@ -305,7 +301,6 @@ pub struct StateVariables {
     pub resolvers: Option<Frame>,
 }
 
-/// The actions of Prim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// Nothing new; a motion continues.

@@ -38,7 +38,6 @@ pub enum Id {
     Illegal,
 }
 
-/// The state variables of [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
     /// Whether the command is new.
@@ -60,7 +59,6 @@ pub struct Situation {
     pub connection: GroupHealth,
 }
 
-/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
     pub arrival: Arrival,
@@ -103,7 +101,6 @@ impl Failure {
     }
 }
 
-/// The actions of Quick Change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// Leave the ring as it is until a reading counts.

@@ -116,7 +116,6 @@ pub struct Situation {
     pub robot: SubtaskRobot,
 }
 
-/// The result of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
     pub arrival: Arrival,
@@ -136,7 +135,6 @@ pub struct StateVariables {
     pub situation: Situation,
 }
 
-/// The action of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// Nothing new.

@@ -80,7 +80,6 @@ pub enum SubtaskPedestal {
     Silent,
 }
 
-/// The robot and the tool drum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SubtaskDrum {
     /// The fingers are around a tool in the drum.
@@ -127,7 +126,6 @@ pub enum Turn {
     Unknown,
 }
 
-/// The hand of the pedestal, by its opening.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum HandOpening {
     /// Wide enough for the object to enter.

@@ -39,7 +39,6 @@ pub enum T3iLink {
     Failed,
 }
 
-/// The controller's DTR.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Dtr {
     /// It is on, or this end of the line has stopped in the middle of a frame and does not check it.
@@ -48,7 +47,6 @@ pub enum Dtr {
     Off,
 }
 
-/// The start of the link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum LinkStart {
     /// In progress or over.
@@ -161,7 +159,6 @@ pub enum PointQueue {
     More,
 }
 
-/// The next position on the way to the oldest point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum NextPosition {
     /// It can be expressed in words on the line.
@@ -183,7 +180,6 @@ pub struct Request {
     pub link: T3iLink,
 }
 
-/// The state variables of [`report::REPORT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Answer {
     /// The controller's DTR.
@@ -198,7 +194,6 @@ pub struct Answer {
     pub before: Before,
 }
 
-/// The state variables of [`follow::FOLLOW`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Feedback {
     /// A RESTART of Prim.
@@ -224,7 +219,6 @@ pub struct Situation {
     pub way: NextPosition,
 }
 
-/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
     pub request: Request,

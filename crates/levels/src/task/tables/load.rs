@@ -50,7 +50,6 @@ pub enum Carry {
     KeepPlace,
 }
 
-/// The state variables of [`PICK_UP`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct NotedObject {
     /// The orders of the command in the ledger.
@@ -59,7 +58,6 @@ pub struct NotedObject {
     pub held: Held,
 }
 
-/// The state variables of [`CARRY`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct EndedCommand {
     /// The event.

@@ -159,7 +159,6 @@ pub struct Situation {
     pub part: TaskPart,
 }
 
-/// The result of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
     pub arrival: Arrival,
@@ -182,7 +181,6 @@ pub struct StateVariables {
     pub situation: Situation,
 }
 
-/// The action of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// Nothing new.

@@ -6,7 +6,6 @@ use rcs_core::{Actions, Plain, Variables, decision_table};
 
 use super::item::Notice;
 
-/// Number of pending updates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Pending {
     /// No pending update.
@@ -30,7 +29,6 @@ pub enum Event {
     Discard,
 }
 
-/// A change of the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum QueueChange {
     /// No change.
@@ -45,7 +43,6 @@ pub enum QueueChange {
     Clear,
 }
 
-/// The state variables of [`QUEUE`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Change {
     /// The event.
@@ -54,7 +51,6 @@ pub struct Change {
     pub pending: Pending,
 }
 
-/// The state variables of [`UPDATE`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Unsent {
     /// The pending updates.

@@ -38,7 +38,6 @@ pub enum Update {
     Pending,
 }
 
-/// The tool gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskTool {
     /// It is not attached, or it holds another tool than the command names.
@@ -106,7 +105,6 @@ pub enum TaskRecipient {
     DataSystem,
 }
 
-/// The kind of destination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Destination {
     /// Any other place, or none is named.

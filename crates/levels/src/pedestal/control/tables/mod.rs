@@ -86,7 +86,6 @@ pub enum Gripped {
     Yes,
 }
 
-/// The state variables of [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
     /// Whether the command is new.
@@ -127,7 +126,6 @@ pub struct Situation {
     pub fingers: Work,
 }
 
-/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
     pub arrival: Arrival,
@@ -142,7 +140,6 @@ pub struct StateVariables {
     pub situation: Situation,
 }
 
-/// The actions of the pedestal process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// Send nothing new.

@@ -14,7 +14,6 @@ use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 use super::goals;
 use crate::execution::{Asked, Course, EXECUTE};
 
-/// Step of all commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Step {
     /// No turn ordered yet: the table comes to rest, or the command waits for the calibration.
@@ -55,7 +54,6 @@ pub enum TableAngle {
     Beyond,
 }
 
-/// The command in execution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TableActivity {
     /// No command has arrived, or the last one has ended.
@@ -87,7 +85,6 @@ impl TableActivity {
     }
 }
 
-/// The state of the motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Motor {
     /// Its controller has not taken the last order yet.
@@ -120,7 +117,6 @@ pub enum Turned {
     Elsewhere,
 }
 
-/// The state variables of [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
     /// Whether the command is new.
@@ -146,7 +142,6 @@ pub struct Situation {
     pub clock: Clock,
 }
 
-/// The results of preprocess in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct StateVariables {
     pub arrival: Arrival,
@@ -166,7 +161,6 @@ pub enum TableDuty {
     Command,
 }
 
-/// The actions of the table process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// No new order.
