@@ -39,7 +39,7 @@ impl Histogram {
         self.total
     }
 
-    /// The ns that `permille` of 1000 values do not exceed: the upper edge of the bucket. 0 without values.
+    /// The value, ns, that `permille` of 1000 values do not exceed: the upper edge of its bucket. 0 without values.
     #[must_use]
     pub fn quantile(&self, permille: u64) -> u64 {
         let wanted = (self.total * permille.min(1000)).div_ceil(1000);

@@ -4,9 +4,9 @@
 //! hold combines both: springs with force limits between the pads' body and the part.
 //!
 //! * Along the pads (X, Z, about Y) the limit is friction: an ellipse of force and moment. Below it the part *sticks*
-//! to its springs; beyond it the part *slides* without springs until it is at rest.
+//!   to its springs; beyond it the part *slides* without springs until it is at rest.
 //! * Across the pads (Y, about X and Z) the limit is the pads' force. A greater force pushes the part aside until the
-//! pads are stronger again.
+//!   pads are stronger again.
 //!
 //! The springs act at the middle of the part, where the six axes are decoupled and the solver is exact without
 //! iteration. The limits apply where the pads touch.

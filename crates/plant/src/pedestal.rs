@@ -4,10 +4,10 @@
 //! Three angles, all in degrees and positive to the left seen from above (ASSUMED):
 //!
 //! * the *counter* of the motor's controller: steps since it was last set, the only angle that the pedestal's
-//! controller has. It is not valid before it was set at the + limit;
+//!   controller has. It is not valid before it was set at the + limit;
 //! * the *motor angle*: the counter after a calibration by IV.1 step 3. The motor stops at once at a switch;
 //! * the *table angle*: the angle of the hand. In VII.7.4 a motor angle of 183.5 flips a part by 180, so the gear ratio
-//! is not exactly one (ASSUMED); the two are equal where the fingers move across the radial line.
+//!   is not exactly one (ASSUMED); the two are equal where the fingers move across the radial line.
 
 mod panel;
 

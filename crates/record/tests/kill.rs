@@ -1,6 +1,6 @@
 //! A run that is killed with `kill -9` at ten random moments: its log can be replayed, and at most a second of the
 //! ticks that the writer had received is missing. The test starts itself as the victim, which prints each recorded tick
-//! with the number of waiting ticks: `cargo test --release -p record --test kill` prints the moments.
+//! with the number of waiting ticks. `cargo test --release -p record --test kill` prints the moments.
 
 #![expect(clippy::print_stdout, reason = "the figures of a campaign are printed")]
 

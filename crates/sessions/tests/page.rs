@@ -1,4 +1,4 @@
-//! The tables of docs/neighbours.md are those of the code: `RCS_WRITE_DOCS=1 cargo test -p sessions --test page`.
+//! The tables of docs/neighbours.md equal the code; `RCS_WRITE_DOCS=1 cargo test -p sessions --test page` writes them.
 
 use std::{env, fmt::Write as _, fs, path::Path};
 

@@ -1,4 +1,4 @@
-//! The start-up of the manual (IV.3.3) and a taught point (III.3.3) with an operator's keys, and a recording for
+//! The start-up of the manual (IV.3.3) and a taught point (III.3.3) with an operator's keys. It is recorded for
 //! `asciinema play`: `RCS_RECORDING=docs/console.cast cargo test --release -p programs --test console recording`.
 
 use std::{env, fmt::Write as _};

@@ -2,7 +2,7 @@
 //!
 //! * each process that runs has stamped its outputs with this tick;
 //! * the distance between Prim's successive points is within the link's limit (14 in/s, 1 rad/s). Near the poles of the
-//! T3's wrist T3 Interface takes longer for a point; this is permitted;
+//!   T3's wrist T3 Interface takes longer for a point; this is permitted;
 //! * E-move's status of the gripper is true: it holds an object, or nothing.
 //!
 //! The first three hold at all times. E-move may be wrong for [`PATIENCE`] ticks after an interruption, because sensors

@@ -1,4 +1,4 @@
-//! Causes of the loss of pressure, and the keys of the console.
+//! Causes of the loss of pressure.
 
 use std::fmt;
 
