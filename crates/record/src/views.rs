@@ -177,7 +177,7 @@ messages! {
         /// Its name in the mapping.
         name: String,
         /// `starting`, `running`, `stale`, `tripped`, `silent` (it has no orders) or `ended`.
-        state: &'static str,
+        state: Cow<'static, str>,
         /// Age of its inputs, ms.
         age_ms: u64,
         /// Its input words, as they were read last.

@@ -182,7 +182,7 @@ fn couplers(desk: &Desk) -> Couplers {
     };
     let coupler = |(device, orders, report, age_ms): (&Device, &Orders, &Report, u64)| Coupler {
         name: device.name.clone(),
-        state: report.state.word(),
+        state: report.state.word().into(),
         age_ms,
         inputs: words(&report.inputs.words, &device.plan.reads),
         commanded: words(&orders.words.words, &device.plan.writes),
