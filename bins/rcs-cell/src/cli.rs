@@ -54,12 +54,12 @@ pub struct Cli {
     /// silent-at, silent-for=S, seed=N.
     #[arg(long, value_name = "egm:PORT", conflicts_with_all = ["link", "auto", "faults"])]
     pub emulate: Option<EgmTarget>,
-    /// The simulated cell behind the couplers of a mapping: a name in data/field, or a file. Modbus TCP servers listen at
-    /// the addresses of the mapping; the robot is --egm-robot, the camera --vision (docs/real-cell.md)
+    /// The simulated cell behind the couplers of a mapping: a name in data/field, or a file. Modbus TCP servers listen
+    /// at the addresses of the mapping; the robot is --egm-robot, the camera --vision (docs/real-cell.md)
     #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["link", "egm", "emulate", "auto", "faults"])]
     pub station: Option<PathBuf>,
-    /// The robot of the station: an EGM robot that sends to this UDP port: PORT or ADDRESS:PORT, then options after commas
-    /// as for --emulate
+    /// The robot of the station: an EGM robot that sends to this UDP port: PORT or ADDRESS:PORT, then options after
+    /// commas as for --emulate
     #[arg(long, value_name = "PORT", requires = "station", value_parser = EgmOptions::to_emulate)]
     pub egm_robot: Option<EgmOptions>,
     /// The camera of the station is the neighbour `vision` of a run: unix:PATH of its --network

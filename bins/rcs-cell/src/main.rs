@@ -1,5 +1,5 @@
-//! `rcs-cell`: the simulated T3 controller behind a pseudo-terminal, a gateway to an EGM robot, an emulated EGM robot, or
-//! the whole simulated cell behind Modbus couplers, EGM and vision ([`mod@station`]).
+//! `rcs-cell`: the simulated T3 controller behind a pseudo-terminal, a gateway to an EGM robot, an emulated EGM robot,
+//! or the whole simulated cell behind Modbus couplers, EGM and vision ([`mod@station`]).
 //!
 //! Any DEPC host can open the terminal like the serial line of a Cincinnati Milacron T3: start-up at the console as in
 //! IV.3.3, the DEPC function of appendix A on the line, 9600 baud.

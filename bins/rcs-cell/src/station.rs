@@ -43,7 +43,7 @@ const TICK: Duration = Duration::from_millis(TICK_MS);
 /// Ticks that were missed while the system slept are left out.
 const MOST_BEHIND: u32 = 5;
 
-const HELP: &str = "tray UNIT SECTOR OBJECT [X Y ANGLE]   put a part into a tray; also vise, machine and drum lines, as in jobs\n\
+const HELP: &str = "tray UNIT SECTOR OBJECT [X Y ANGLE]   put a part into a tray; also vise and drum lines\n\
                     estop      press the emergency stop: safety circuit open, robot stopped\n\
                     release    release it; motors and start let the robot run again\n\
                     motors, start, stop                   the EGM robot's buttons\n\

@@ -145,8 +145,8 @@ impl SimulatedWorkstation {
         self.begin(action, line)
     }
 
-    /// Begin a line that devices behind couplers execute. Returns false for one that the cell executes; a person fills the
-    /// trays of the simulated cell.
+    /// Begin a line that devices behind couplers execute. Returns false for one that the cell executes; a person fills
+    /// the trays of the simulated cell.
     fn begin_by_devices(&mut self, action: &Action) -> Result<bool, String> {
         let Some(field) = self.field.as_deref_mut() else { return Ok(false) };
         let is_simulated = matches!(field, Field::Simulated(_));

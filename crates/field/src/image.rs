@@ -151,8 +151,8 @@ impl Mapping {
         }
     }
 
-    /// True if the safety circuit is open. A late input says nothing: its device trips if it stays away. A mapping without
-    /// `safety.ok` has no safety circuit.
+    /// True if the safety circuit is open. A late input says nothing: its device trips if it stays away. A mapping
+    /// without `safety.ok` has no safety circuit.
     #[must_use]
     pub fn is_safety_open(&self, devices: &[Seen]) -> bool {
         let point = self.inputs.iter().find(|point| point.name == SAFETY);

@@ -21,8 +21,8 @@ pub enum Happened {
     /// The outputs of the device are safe until an operator releases it.
     Tripped(Trip),
     Released,
-    /// The release was refused: an output that must be off at rest is commanded, the device does not answer, or the safety
-    /// circuit is open.
+    /// The release was refused: an output that must be off at rest is commanded, the device does not answer, or the
+    /// safety circuit is open.
     Refused,
     /// A line of the job needs a person.
     Asks(String),

@@ -271,25 +271,26 @@ fn wrong_entries_are_refused_with_their_line() {
     let changed = |from: &str, to: &str| {
         assert!(MAPPING.contains(from), "{from}");
         let text = MAPPING.replacen(from, to, 1);
-        let report =
-            Mapping::parse(&Source { name: "bench.toml".to_owned(), text: text.into() }).expect_err(to);
-        let one = &report.diagnostics()[0];
-        format!("{}: {}", one.place(), one.message())
+        let source = Source { name: "bench.toml".to_owned(), text: text.into() };
+        let report = Mapping::parse(&source).expect_err(to);
+        let all = report.diagnostics().iter().map(|one| format!("{}: {}", one.place(), one.message()));
+        all.collect::<Vec<_>>()
     };
     for (from, to, line, said) in [
-        ("machine BLANK PART V", "mill BLANK", 29, "begins with vise, machine, drum, tray"),
-        ("\"vise open V\"", "\"machine  BLANK PART V\"", 41, "a line that no other entry has"),
-        ("[\"machine.V.busy\"]", "[\"machine.W.busy\"]", 32, "expected an input of [in]"),
-        ("[\"machine.V.busy\"]", "[\"vise.V.program\"]", 32, "vise.V.program = VALUE"),
-        ("[\"machine.V.busy\"]", "[\"machine.V.busy = 2\"]", 32, "machine.V.busy or !machine.V.busy"),
-        ("\"machine.V.start\" = 1", "\"machine.V.go\" = 1", 31, "expected an output of [out]"),
-        ("\"machine.V.start\" = 1", "\"machine.V.start\" = 2", 31, "expected 0 to 1, found 2"),
-        ("within_s = 900", "within_s = 0", 37, "expected 1 to 65535 s, found 0"),
-        ("done = [\"vise.V.opened\", \"!vise.V.clamped\"]", "done = []", 43, "at least one input"),
-        ("within_s = 900", "whithin_s = 900", 37, "whithin_s"),
+        ("machine BLANK PART V", "mill BLANK", 30, "begins with vise, machine, drum, tray"),
+        ("\"vise open V\"", "\"machine  BLANK PART V\"", 42, "a line that no other entry has"),
+        ("[\"machine.V.busy\"]", "[\"machine.W.busy\"]", 33, "expected an input of [in]"),
+        ("[\"machine.V.busy\"]", "[\"vise.V.program\"]", 33, "vise.V.program = VALUE"),
+        ("[\"machine.V.busy\"]", "[\"machine.V.busy = 2\"]", 33, "machine.V.busy or !machine.V.busy"),
+        ("\"machine.V.start\" = 1", "\"machine.V.go\" = 1", 32, "expected an output of [out]"),
+        ("\"machine.V.start\" = 1", "\"machine.V.start\" = 2", 32, "expected 0 to 1, found 2"),
+        ("within_s = 900", "within_s = 0", 38, "expected 1 to 65535 s, found 0"),
+        ("done = [\"vise.V.opened\", \"!vise.V.clamped\"]", "done = []", 44, "at least one input"),
+        ("within_s = 900", "whithin_s = 900", 38, "whithin_s"),
     ] {
         let found = changed(from, to);
         let at = format!("bench.toml: line {line}, column ");
-        assert!(found.starts_with(&at) && found.contains(said), "{to}: {at} {said}: {found}");
+        let is_there = found.iter().any(|one| one.starts_with(&at) && one.contains(said));
+        assert!(is_there, "{to}: {at} {said}: {found:#?}");
     }
 }

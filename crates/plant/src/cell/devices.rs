@@ -4,21 +4,22 @@
 //! | device | outputs | behaviour |
 //! |---|---|---|
 //! | vise | `open`, `partial`, `close`, `program` | bistable: it stays where it is while all three outputs are off |
-//! | machine | `start`, `program` | a rising `start` begins a cycle of [`MACHINING_TICKS`]; afterwards the part is machined |
+//! | machine | `start`, `program` | a rising `start` begins a cycle of [`MACHINING_TICKS`], which machines the part |
 //! | drum | `grip`, `release`, `tool` | a new number brings the tool of that pocket to the fingers, once |
 //! | trays | none | a sensor per sector |
 //!
 //! The numbers of programs and pockets are those of a [`Programs`], since the cell description has names.
 
-use interfaces::point::Station;
-use interfaces::station::EStop;
+mod bind;
+
+use interfaces::{point::Station, station::EStop};
 use rcs_core::tick::TICK_MS;
 
+use self::bind::{Output, Sensor, check};
 use super::{Cell, WorkstationAction};
 use crate::{CellDescription, vise::Jaws};
 
-/// Duration of a cycle of the machine. CHOSEN: 3 s, so that a job takes little longer than with a machine that is done at
-/// once.
+/// Duration of a cycle of the machine. CHOSEN: 3 s, so that a job takes little longer than without it.
 pub const MACHINING_TICKS: u64 = 3000 / TICK_MS;
 /// A machine reports a fault for this time. CHOSEN: 5 s, in which its own operator acknowledges it.
 const FAULT_TICKS: u64 = 5000 / TICK_MS;
@@ -45,38 +46,6 @@ pub enum DeviceError {
     /// A program with a name that the cell does not have.
     #[error("program {number}: {why}")]
     Program { number: i64, why: String },
-}
-
-/// An output that a device follows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Output {
-    Vise(Jaws),
-    ViseProgram,
-    Start(usize),
-    MachineProgram(usize),
-    Grip,
-    Release,
-    Tool,
-}
-
-/// A sensor of a device.
-#[derive(Clone, Debug, PartialEq)]
-enum Sensor {
-    Vise(Jaws),
-    ViseProgram,
-    Ready(usize),
-    Busy(usize),
-    Done(usize),
-    Fault(usize),
-    Clear(usize),
-    Gripped,
-    Released,
-    Tool,
-    Tray(String, u16),
-    Air,
-    Safety,
-    /// An input of the controller's own records.
-    None,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -112,8 +81,8 @@ pub struct Devices {
 }
 
 impl Devices {
-    /// Devices for the points with these names: outputs of the controller, and its inputs. Names of the controller's own
-    /// records are permitted, and not used.
+    /// Devices for the points with these names: outputs of the controller, and its inputs. Names of the controller's
+    /// own records are permitted, and not used.
     ///
     /// # Errors
     /// [`DeviceError`] for a point or a program of a device that the cell does not have.
@@ -148,76 +117,6 @@ impl Devices {
             devices.sensors.push(sensor.unwrap_or(Sensor::None));
         }
         Ok(devices)
-    }
-
-    fn output(
-        &mut self,
-        name: &str,
-        point: &Station<'_>,
-        cell: &CellDescription,
-    ) -> Result<Output, DeviceError> {
-        let (device, last) = ends(name);
-        Ok(match (device, last) {
-            ("vise", "open") => self.vise_at(name, point, cell).map(|()| Output::Vise(Jaws::Open))?,
-            ("vise", "partial") => self.vise_at(name, point, cell).map(|()| Output::Vise(Jaws::Partial))?,
-            ("vise", "close") => self.vise_at(name, point, cell).map(|()| Output::Vise(Jaws::Closed))?,
-            ("vise", _) => self.vise_at(name, point, cell).map(|()| Output::ViseProgram)?,
-            ("machine", "start") => Output::Start(self.machine_at(name, point, cell)?),
-            ("machine", _) => Output::MachineProgram(self.machine_at(name, point, cell)?),
-            (_, "grip") => Output::Grip,
-            (_, "release") => Output::Release,
-            _ => Output::Tool,
-        })
-    }
-
-    fn sensor(
-        &mut self,
-        name: &str,
-        point: &Station<'_>,
-        cell: &CellDescription,
-    ) -> Result<Sensor, DeviceError> {
-        let (device, last) = ends(name);
-        Ok(match (device, last) {
-            ("vise", "opened") => self.vise_at(name, point, cell).map(|()| Sensor::Vise(Jaws::Open))?,
-            ("vise", "partial") => self.vise_at(name, point, cell).map(|()| Sensor::Vise(Jaws::Partial))?,
-            ("vise", "clamped") => self.vise_at(name, point, cell).map(|()| Sensor::Vise(Jaws::Closed))?,
-            ("vise", _) => self.vise_at(name, point, cell).map(|()| Sensor::ViseProgram)?,
-            ("machine", "ready") => Sensor::Ready(self.machine_at(name, point, cell)?),
-            ("machine", "busy") => Sensor::Busy(self.machine_at(name, point, cell)?),
-            ("machine", "done") => Sensor::Done(self.machine_at(name, point, cell)?),
-            ("machine", "fault") => Sensor::Fault(self.machine_at(name, point, cell)?),
-            ("machine", _) => Sensor::Clear(self.machine_at(name, point, cell)?),
-            ("tray", _) => tray_at(name, point, cell)?,
-            ("drum", "gripped") => Sensor::Gripped,
-            ("drum", "released") => Sensor::Released,
-            ("drum", _) => Sensor::Tool,
-            ("air", _) => Sensor::Air,
-            _ => Sensor::Safety,
-        })
-    }
-
-    fn vise_at(&self, name: &str, point: &Station<'_>, cell: &CellDescription) -> Result<(), DeviceError> {
-        cell.has_vise_at(point.place).map_err(|_| DeviceError::NoDevice {
-            point: name.to_owned(),
-            expected: format!("its vise at {}", cell.vise.location),
-        })
-    }
-
-    /// Index of the machine at the place of a point.
-    fn machine_at(
-        &mut self,
-        name: &str,
-        point: &Station<'_>,
-        cell: &CellDescription,
-    ) -> Result<usize, DeviceError> {
-        if let Some(index) = self.machines.iter().position(|machine| machine.location == point.place) {
-            return Ok(index);
-        }
-        let known = cell.machine_at(point.place, "");
-        known
-            .map_err(|error| DeviceError::NoDevice { point: name.to_owned(), expected: error.to_string() })?;
-        self.machines.push(Machine { location: point.place.to_owned(), ..Machine::default() });
-        Ok(self.machines.len() - 1)
     }
 
     /// Presses the emergency stop of the safety circuit, or releases it. It does not act on the simulated T3.
@@ -406,45 +305,6 @@ impl Devices {
             Sensor::None => 0,
         }));
     }
-}
-
-/// The first and the last word of a point's name.
-fn ends(name: &str) -> (&str, &str) {
-    let first = name.split('.').next().unwrap_or_default();
-    (first, name.rsplit('.').next().unwrap_or_default())
-}
-
-fn tray_at(name: &str, point: &Station<'_>, cell: &CellDescription) -> Result<Sensor, DeviceError> {
-    let place = point.place.split_once('.').and_then(|(unit, sector)| Some((unit, sector.parse().ok()?)));
-    let there = place.filter(|(unit, sector)| {
-        let tray = cell.tray(unit).is_some_and(|tray| tray.sector(*sector).is_some());
-        tray || cell.nest.iter().any(|nest| nest.location == *unit && nest.sector == *sector)
-    });
-    there.map(|(unit, sector)| Sensor::Tray(unit.to_owned(), sector)).ok_or_else(|| {
-        let units = cell.tray.iter().map(|tray| format!("{} with {} sectors", tray.unit, tray.sectors.len()));
-        DeviceError::NoDevice { point: name.to_owned(), expected: units.collect::<Vec<_>>().join(", ") }
-    })
-}
-
-/// Checks the names of all programs.
-fn check(programs: &Programs, cell: &CellDescription) -> Result<(), DeviceError> {
-    let vise = programs
-        .vise
-        .iter()
-        .map(|(number, name)| (*number, WorkstationAction::ViseProgram { name: name.clone() }));
-    let machine = programs.machine.iter().map(|(number, [location, from, to])| {
-        let (location, from, to) = (location.clone(), from.clone(), to.clone());
-        (*number, WorkstationAction::Machine { from, to, location })
-    });
-    let drum = programs
-        .drum
-        .iter()
-        .map(|(number, part)| (*number, WorkstationAction::DrumTool { part: part.clone() }));
-    for (number, action) in vise.chain(machine).chain(drum) {
-        let admitted = cell.admits(&action);
-        admitted.map_err(|error| DeviceError::Program { number, why: error.to_string() })?;
-    }
-    Ok(())
 }
 
 /// True if the fingertips of the robot are far from a place.
