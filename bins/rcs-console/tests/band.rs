@@ -1,7 +1,7 @@
 //! The state band as a model, without a terminal: each state from its sensors.
 
 use executive::memory::Text;
-use interfaces::{ProcessId, Reason, hws::HwsReport, operator::board_bit};
+use interfaces::{ProcessId, Reason, device::GroupHealth, hws::HwsReport, operator::board_bit};
 use programs::rcs_console::{
     model::{
         Model, Operating, Screen,
@@ -50,7 +50,7 @@ type Case = (fn(&mut Desk), Condition, &'static str, &'static str);
 
 #[test]
 fn every_state_follows_from_its_sensors() {
-    let cases: [Case; 16] = [
+    let cases: [Case; 18] = [
         (|_| {}, Condition::Running, "MOVE", ""),
         (|desk| desk.run.picture.external.hws.number = 0, Condition::Paused, "no command yet", ""),
         (
@@ -97,6 +97,25 @@ fn every_state_follows_from_its_sensors() {
             Condition::Stopped,
             "knob is at 0",
             "Space turns it back",
+        ),
+        (
+            |desk| {
+                let devices = &mut desk.run.picture.external.devices;
+                devices.joystick.velocity = 0;
+                (devices.field.grip, devices.field.any) = (GroupHealth::Stale, GroupHealth::Stale);
+            },
+            Condition::Stopped,
+            "field I/O: grip stale",
+            "waits for the device",
+        ),
+        (
+            |desk| {
+                let field = &mut desk.run.picture.external.devices.field;
+                (field.hand, field.any) = (GroupHealth::Tripped, GroupHealth::Tripped);
+            },
+            Condition::Stopped,
+            "pedestal tripped",
+            "io go DEVICE",
         ),
         (
             |desk| desk.run.picture.memory.header_mut(ProcessId::Prim).republished = true,

@@ -17,6 +17,8 @@ use crate::failure::Failure;
 
 /// Code of a coupler whose outputs were made safe: the devices are stopped, which is not a failure of the job.
 const TRIPPED: &str = "io.tripped";
+/// Codes of a coupler that works again. The text of such an event begins with the name of the coupler.
+const WORKS_AGAIN: [&str; 2] = ["io.back", "io.released"];
 
 /// Kinds of failures. Within a tick, an earlier kind is the cause of a later one.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -231,6 +233,11 @@ pub struct Alarms {
 impl Alarms {
     /// Note a line of `/log` with its tick and code. A line without a failure is ignored.
     pub fn line(&mut self, tick: Tick, source: &str, code: &str, text: &str) {
+        if WORKS_AGAIN.contains(&code) {
+            let coupler = |text: &str| text.split(' ').next().map(str::to_owned);
+            let works = coupler(text);
+            self.failures.retain(|failure| failure.process != source || coupler(&failure.text) != works);
+        }
         if let Some(kind) = Kind::of_code(code) {
             let tick = Tick(tick.0.saturating_sub(u64::from(kind.is_in_cell())));
             let failure = Failure::outside(tick, kind, source, text.to_owned());
@@ -290,6 +297,20 @@ mod tests {
             failure(5, Kind::EmergencyStop, "the E-stop was pressed"),
         ]);
         assert_eq!(account.expect("there are failures").first.kind, Kind::EmergencyStop);
+    }
+
+    #[test]
+    fn coupler_that_works_again_explains_no_failure() {
+        let mut alarms = Alarms::default();
+        alarms.line(Tick(4), "field", "io.stale", "arm has not answered for 120 ms");
+        alarms.line(Tick(5), "field", "io.stale", "fixture has not answered for 120 ms");
+        alarms.line(Tick(6), "field", "io.back", "arm answers again after 160 ms");
+        let account = alarms.account().expect("the fixture is still away");
+        assert!(account.to_string().starts_with("fixture") && !account.is_stopped(), "{account}");
+        alarms.line(Tick(9), "field", "io.tripped", "fixture was not written for 600 ms");
+        assert!(alarms.account().is_some_and(|account| account.is_stopped()));
+        alarms.line(Tick(30), "field", "io.released", "fixture is released");
+        assert_eq!(alarms.account(), None);
     }
 
     #[test]

@@ -291,6 +291,23 @@ pub struct FieldHealth {
     pub any: GroupHealth,
 }
 
+impl FieldHealth {
+    /// The groups that are not fresh, by name.
+    pub fn late(&self) -> impl Iterator<Item = (&'static str, GroupHealth)> {
+        let groups = [
+            ("grip", self.grip),
+            ("quick-change", self.quick_change),
+            ("holsters", self.holsters),
+            ("tool", self.force),
+            ("pedestal", self.hand),
+            ("table", self.table),
+            ("joystick", self.joystick),
+            ("resolvers", self.resolvers),
+        ];
+        groups.into_iter().filter(|(_, health)| *health != GroupHealth::Fresh)
+    }
+}
+
 /// All words that the controller reads from its devices in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct DeviceInputs {

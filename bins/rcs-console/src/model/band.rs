@@ -2,7 +2,12 @@
 
 use closed_loop::{account::Kind, failure::Failure};
 use interfaces::{
-    Fault, ProcessId, device::KNOB_FULL, emove::Holding, hws::HwsReport, operator::BOARDS, station::BoxFrame,
+    Fault, ProcessId,
+    device::{FieldHealth, GroupHealth, KNOB_FULL},
+    emove::Holding,
+    hws::HwsReport,
+    operator::BOARDS,
+    station::BoxFrame,
 };
 use os_io::units::shown;
 use rcs_core::tick::TICK_S;
@@ -237,6 +242,13 @@ fn stopped(scene: &Scene<'_>) -> Option<Finding> {
     if scene.picture.absence(ProcessId::Prim) == Some(Absence::Held) && !scene.is_recording() {
         return stopped("Prim is held at the joystick box".to_owned(), "h releases it".to_owned());
     }
+    if let Some(devices) = late_devices(&external.devices.field) {
+        let next = match external.devices.field.any {
+            GroupHealth::Tripped => "5: `io go DEVICE`, then `job go`",
+            _ => "the robot waits for the device: `io` names it",
+        };
+        return stopped(devices, next.to_owned());
+    }
     if external.devices.joystick.velocity == 0 {
         return stopped("the velocity knob is at 0".to_owned(), "Space turns it back".to_owned());
     }
@@ -248,6 +260,17 @@ fn stopped(scene: &Scene<'_>) -> Option<Finding> {
         "" => None,
         cut => stopped(format!("no pressure: {cut}"), "7: the procedures start the robot".to_owned()),
     }
+}
+
+/// The devices behind field I/O that are not fresh, as text; `None` if all are.
+#[must_use]
+pub fn late_devices(field: &FieldHealth) -> Option<String> {
+    if field.any == GroupHealth::Fresh {
+        return None;
+    }
+    let groups: Vec<String> = field.late().map(|(group, health)| format!("{group} {health}")).collect();
+    let groups = if groups.is_empty() { format!("a device {}", field.any) } else { groups.join(", ") };
+    Some(format!("field I/O: {groups}"))
 }
 
 fn paused(scene: &Scene<'_>) -> Option<Finding> {

@@ -13,6 +13,7 @@ use interfaces::{
 
 use super::{
     Section, Text, Tone,
+    band::late_devices,
     session::{JOGS, Operating},
 };
 use crate::rcs_console::source::Cell;
@@ -90,6 +91,7 @@ pub fn sections(
     let mut lines = joystick_box(&devices.joystick, memory.prim.status.recording, operating);
     lines.extend(controller(cell));
     lines.push(pedestal(memory));
+    lines.extend(late_devices(&devices.field).map(|text| Text::new(Tone::Marked, format!(" {text}"))));
     if let Cell::Shown(view) = cell {
         lines.push(rotary_table(&devices.pedestal, view.table));
     }

@@ -127,6 +127,18 @@ mod tests {
     }
 
     #[test]
+    fn safe_outputs_by_hand_are_refused_during_a_command_and_while_something_is_held() {
+        let mut memory = CommonMemory::default();
+        memory.emove.status.held = Holding::Nothing;
+        assert_eq!(check_safe(&memory), Ok(()));
+        memory.task.status.report = HwsReport::Executing;
+        assert!(check_safe(&memory).unwrap_err().contains("`job wait`"));
+        memory.task.status.report = HwsReport::Finished;
+        memory.emove.status.held = Holding::NotKnown;
+        assert!(check_safe(&memory).unwrap_err().contains("put it down first"));
+    }
+
+    #[test]
     fn every_obstacle_of_a_playing_job_is_named() {
         let mut memory = CommonMemory::default();
         memory.t3i.status.link_running = true;

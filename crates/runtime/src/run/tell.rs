@@ -138,9 +138,11 @@ impl Run {
         }
         for event in &self.fresh {
             // Contacts and false reports have their own judges, and a warning matters only if it explains a failure.
-            if let Some(Kind::EmergencyStop | Kind::Power | Kind::Lost | Kind::Device) =
-                Kind::of_code(event.code())
-            {
+            let kind = Kind::of_code(event.code());
+            let is_alarm =
+                matches!(kind, Some(Kind::EmergencyStop | Kind::Power | Kind::Lost | Kind::Device));
+            // The end of a coupler's trouble is no alarm, but withdraws one.
+            if is_alarm || matches!(event, Event::Field(_)) {
                 self.alarms.line(tick.next(), event.source(), event.code(), &event.to_string());
             }
             self.observer.event(tick, event);
