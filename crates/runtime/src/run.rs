@@ -198,6 +198,9 @@ impl Run {
             let external = self.closed.external_with(&self.given(None));
             let Self { closed, runner, .. } = self;
             closed.with_data(|course, data| runner.warm_up(course, &external, data));
+            if let Some(field) = &mut self.field {
+                field.warm_up(&mut self.closed);
+            }
         }
         let tick = self.closed.tick().next();
         for event in self.pace.wait(self.runner.stage_times()) {

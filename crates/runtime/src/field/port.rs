@@ -138,6 +138,16 @@ impl FieldPort {
         self.devices.iter().for_each(|device| device.align(start));
     }
 
+    /// Shortly before a tick: fetch the newest reports, and what the tick needs, into the caches.
+    pub fn warm_up(&mut self, closed: &mut ClosedLoop<Controller>) {
+        self.devices.iter_mut().for_each(|device| {
+            device.report();
+        });
+        if let Some(field) = closed.workstation.field.as_deref_mut() {
+            field.desk_mut().warm_up();
+        }
+    }
+
     /// Before the controller's tick: its inputs from the newest reports. Does not wait or allocate.
     pub fn receive(&mut self, closed: &mut ClosedLoop<Controller>) {
         let _section = Section::enter();
