@@ -4,7 +4,7 @@ use executive::memory::ReadError;
 use record::replay;
 use whole_system_tests::{
     Scratch,
-    bench::{Ended, Running, assert_cleaned, traces},
+    bench::{Ended, Running, assert_cleaned, rcs, traces, wait_for},
 };
 
 const JOBS: [(&str, u64); 4] = // lengths in ticks
@@ -68,4 +68,27 @@ fn in_real_time_a_kill_costs_a_second_of_the_log() {
     assert!(!traces(&run.name).is_empty(), "a killed run leaves something");
     assert_log_reaches(&scratch.file("killed.mcap"), tick, BEHIND_REAL);
     assert_cleaned(&scratch.file(""), &run.name);
+}
+
+#[test]
+fn a_killed_run_is_resumed_from_its_journal() {
+    let scratch = Scratch::new("resume");
+    let directory = scratch.file("");
+    for kill in 0..kills() {
+        let target = 60.0 + (kill as f64 * 0.618_033_988_75).fract() * 5_400.0;
+        let more = ["--clock", "20x", "--log", "none"];
+        let journal = [&more[..], &["--journal", "run.journal"]].concat();
+        let mut run = Running::start(&directory, "linkbar", &journal);
+        let reader = run.attach();
+        let tick = run.reach(&reader, target as u64);
+        drop(reader);
+        run.kill();
+        let resume = [&more[..], &["--resume", "run.journal"]].concat();
+        let mut run = Running::start(&directory, "linkbar", &resume);
+        drop(run.attach());
+        let go = ["send", "--run", run.name.as_str(), "resume", "job go"];
+        wait_for("the job goes on", || rcs(&directory, &go).output().is_ok_and(|sent| sent.status.success()));
+        let ended = run.end();
+        assert_eq!(ended.status, Some(0), "killed after {tick}: {}", ended.last_words());
+    }
 }

@@ -7,7 +7,7 @@ use diagnostics::{JOBS, UnknownFile, nearest};
 use executive::memory::{OnStuck, RunName};
 use os_io::{carried::is_carried, stderr_line};
 use runtime::{
-    Ending, Observer, Run, RunConfig, RunOutcome, StartError,
+    ClockKind, Ending, Observer, Run, RunConfig, RunOutcome, StartError,
     result::{FailureResult, RunResult},
 };
 
@@ -44,6 +44,9 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let is_at_port = config.robot.kind.lives_in_real_time() || config.has_real_devices();
     if is_at_port && arguments.data.is_none() && is_carried(&config.data) {
         return Err(Error::BuiltInAtPort);
+    }
+    if config.resume.is_some() && config.clock == ClockKind::Fast {
+        return Err(StartError::ResumeStandBy.into());
     }
     let run = Run::new(config, observer).map_err(explained)?;
     if let Some(address) = run.live_address().filter(|_| arguments.open)

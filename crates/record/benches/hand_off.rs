@@ -1,4 +1,5 @@
-//! Cost of recording: [`Recorder::tick`] in the thread of the ticks, with 1 ms per tick, and [`Recorder::cell`].
+//! Cost of recording: [`Recorder::tick`] in the thread of the ticks, with 1 ms per tick, and [`Recorder::cell`]; and of
+//! a journal whose knowledge changes in every tick, as while the robot moves.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "figures are what it is for")]
 
@@ -10,7 +11,11 @@ use std::{
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::Ladder;
 use rcs_core::tick::Tick;
-use record::{CellFrame, End, Pace, Recorder, Setup, Timing, writer::TickRecord};
+use record::{
+    CellFrame, End, Pace, Recorder, Setup, Timing,
+    journal::{self, Entry, Identity, Journal},
+    writer::TickRecord,
+};
 use taskdata::files::TaskData;
 
 const TICKS: u64 = 5000;
@@ -44,6 +49,30 @@ fn main() {
     match recorder.finish(End::default()) {
         Ok(summary) => println!("{} ticks, {} bytes, lost {:?}", summary.ticks, summary.bytes, summary.lost),
         Err(error) => eprintln!("{error}"),
+    }
+    let _ = std::fs::remove_file(path);
+    hand_off_of_the_journal(&memory);
+}
+
+fn hand_off_of_the_journal(memory: &CommonMemory) {
+    let path = std::env::temp_dir().join(format!("hand-off-{}.journal", std::process::id()));
+    let mut journal = match Journal::start(&path, &Identity::new(), None) {
+        Ok(journal) => journal,
+        Err(error) => return eprintln!("{error}"),
+    };
+    let mut times = Vec::new();
+    for tick in (1..=TICKS).map(Tick) {
+        let started = Instant::now();
+        let line = u32::try_from(tick.0).unwrap_or_default();
+        journal.tick(&Entry { tick, line, memory: journal::kept(memory), ..Entry::default() });
+        times.push(started.elapsed());
+        thread::sleep(Duration::from_millis(1));
+    }
+    println!("an entry is {} bytes, a journal {}", journal::SLOT, journal::LENGTH);
+    tell("hand-off of an entry", times);
+    match journal.finish(None) {
+        Some(trouble) => eprintln!("{trouble}"),
+        None => println!("on the disk: {:?}", journal::open(&path).map(|read| read.newest.tick)),
     }
     let _ = std::fs::remove_file(path);
 }

@@ -7,12 +7,12 @@ use std::{
 };
 
 use closed_loop::ClosedLoop;
-use interfaces::emove::GoneTo;
+use interfaces::{DeviceOutputs, emove::GoneTo};
 use neighbours::workstation::player::{Hwsc, PlaceInJob};
 use os_io::files;
-use plant::{Cell, CellDescription};
+use plant::{Cell, CellDescription, RestoreError};
 use rcs_core::digest::Digest;
-use record::journal::{self, Contents, Entry, Identity};
+use record::journal::{self, Contents, Entry, HEARTBEAT, Identity};
 use taskdata::load::{Job, Store};
 
 use crate::{
@@ -24,12 +24,19 @@ use crate::{
 /// Greatest length of a saved cell, bytes.
 const LARGEST_CELL: u64 = 64 << 20;
 
+/// Ticks for which a simulated cell is without power: 2 s.
+const OUTAGE: u64 = 50;
+/// Ticks by which the saved cell may be older than the last entry: ten seconds, for a disk that is busy.
+const OLDEST_CELL: u64 = 10 * HEARTBEAT;
+
 /// The knowledge of an earlier run.
 pub struct Resumed {
     path: PathBuf,
     contents: Contents,
     /// The cell that the run simulates, as saved.
     cell: Vec<u8>,
+    /// The robot is simulated, too.
+    is_simulated: bool,
 }
 
 /// The time of day, ms since 1970.
@@ -95,12 +102,17 @@ impl Resumed {
         if contents.newest.over {
             return Err(StartError::NothingToResume(path.clone()));
         }
-        if config.robot.kind == RobotKind::Sim {
+        let newest = contents.newest.tick;
+        if newest.since(entry.tick) > OLDEST_CELL {
+            return Err(failed(format!("it is of tick {}, the last entry of tick {newest}", entry.tick)));
+        }
+        let is_simulated = config.robot.kind == RobotKind::Sim;
+        if is_simulated {
             // The simulated cell lives in the run: the plug is pulled in the tick of its last save.
             contents = Contents { newest: entry, torn: false, ..contents };
         }
         let cell = saved.to_vec();
-        Ok(Some(Self { path: path.clone(), contents, cell }))
+        Ok(Some(Self { path: path.clone(), contents, cell, is_simulated }))
     }
 
     pub const fn entry(&self) -> &Entry {
@@ -123,10 +135,16 @@ impl Resumed {
     /// # Errors
     /// [`StartError::ResumedCell`] if it is of another description or version.
     pub fn cell(&self, description: &CellDescription) -> Result<Cell, StartError> {
-        Cell::restore(description, &self.cell).map_err(|error| StartError::ResumedCell {
-            path: journal::cell_beside(&self.path),
-            why: error.to_string(),
-        })
+        let path = journal::cell_beside(&self.path);
+        let failed = |error: RestoreError| StartError::ResumedCell { path, why: error.to_string() };
+        let mut cell = Cell::restore(description, &self.cell).map_err(failed)?;
+        if self.is_simulated {
+            // Without power every output is zero: the arm comes to rest, and a part may fall.
+            for _ in 0..OUTAGE {
+                cell.step(&DeviceOutputs::default());
+            }
+        }
+        Ok(cell)
     }
 
     /// Compare the run of the journal with this one.

@@ -37,8 +37,8 @@ pub use self::{
 /// Ticks after which an entry is due although nothing has changed: one second.
 pub const HEARTBEAT: u64 = 25;
 
-/// Ticks in which the disk must take an entry: five seconds.
-const LATE: u64 = 5 * HEARTBEAT;
+/// Time in which the disk must take an entry, ms of the clock of the entries. In fast clock the run does not wait.
+const LATE: u64 = 5_000;
 
 /// Why a journal cannot be begun or used.
 #[derive(Debug, thiserror::Error)]
@@ -90,8 +90,8 @@ struct State {
     entry: Box<Entry>,
     /// The entry has not been taken by the thread.
     is_new: bool,
-    /// Tick since which the thread has taken none.
-    since: Tick,
+    /// The oldest entry that the thread has not taken: its tick and its time.
+    since: (Tick, u64),
     is_over: bool,
     /// A saved cell that the thread has not taken.
     cell: Option<Vec<u8>>,
@@ -100,8 +100,8 @@ struct State {
 }
 
 impl Journal {
-    /// Begin a journal, with `first` as its first entry. An earlier one at this path is replaced as a whole. Without a
-    /// first entry, the saved cell beside it is removed.
+    /// Begin a journal, with `first` as its first entry. An earlier one at this path is replaced as a whole. If its run
+    /// has not ended, and `first` does not continue it, it is kept under another name ([`kept_before`]).
     ///
     /// # Errors
     /// [`JournalError`] if the file belongs to another run, is no journal, or cannot be created.
@@ -114,7 +114,7 @@ impl Journal {
         let _earlier = claim(path)?;
         let (bytes, of_head) = begun(identity, first);
         if first.is_none() {
-            remove(&cell_beside(path)).map_err(failed)?;
+            set_aside(path).map_err(failed)?;
         }
         replace::replace(path, &bytes).map_err(failed)?;
         let file = OpenOptions::new().write(true).open(path).map_err(failed)?;
@@ -122,7 +122,7 @@ impl Journal {
         let state = State {
             entry: Box::default(),
             is_new: false,
-            since: Tick::BEFORE_START,
+            since: (Tick::BEFORE_START, 0),
             is_over: false,
             cell: None,
             trouble: None,
@@ -179,7 +179,7 @@ impl Journal {
             Err(Busy::WouldBlock) => return,
         };
         if !state.is_new {
-            state.since = entry.tick;
+            state.since = (entry.tick, entry.written);
         }
         (*state.entry, state.is_new) = (*entry, true);
         drop(state);
@@ -200,10 +200,11 @@ impl Journal {
     /// ticks.
     pub fn trouble(&mut self) -> Option<Option<String>> {
         let Ok(state) = self.shared.state.try_lock() else { return None };
-        let waits = if state.is_new { state.entry.tick.since(state.since) } else { 0 };
+        let (tick, written) = state.since;
+        let waits = if state.is_new { state.entry.written.saturating_sub(written) } else { 0 };
         let trouble = match waits {
             0..=LATE => state.trouble.clone(),
-            _ => Some(format!("the disk has taken no entry since tick {}", state.since)),
+            _ => Some(format!("the disk has taken no entry since tick {tick}")),
         };
         drop(state);
         let is_news = trouble != self.reported;
@@ -245,12 +246,24 @@ pub fn cell_beside(path: &Path) -> PathBuf {
     path.with_added_extension("cell")
 }
 
-/// Remove a file, if there is one.
-fn remove(path: &Path) -> io::Result<()> {
-    match fs::remove_file(path) {
+/// The earlier journal at a path, kept if its run has not ended.
+#[must_use]
+pub fn kept_before(path: &Path) -> PathBuf {
+    path.with_added_extension("before")
+}
+
+/// Keep an earlier journal from which a run can be resumed, with its cell. Otherwise remove the cell.
+fn set_aside(path: &Path) -> io::Result<()> {
+    let found = |result: io::Result<()>| match result {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         _ => Ok(()),
+    };
+    if open(path).is_ok_and(|contents| !contents.newest.over) {
+        let before = kept_before(path);
+        found(fs::rename(cell_beside(path), cell_beside(&before)))?;
+        return fs::rename(path, before);
     }
+    found(fs::remove_file(cell_beside(path)))
 }
 
 fn locked(shared: &Shared) -> MutexGuard<'_, State> {
@@ -398,6 +411,17 @@ mod tests {
         assert_eq!(open(&path).unwrap().newest, entry(70));
         assert_eq!(journal.finish(None), None);
         assert_eq!(open(&path).unwrap().newest, entry(70));
+    }
+
+    #[test]
+    fn journal_of_an_interrupted_run_is_not_overwritten() {
+        let (_directory, path, journal) = started(Some(&entry(70)));
+        assert_eq!(journal.finish(None), None);
+        fs::write(cell_beside(&path), "a cell").unwrap();
+        drop(Journal::start(&path, &Identity::new(), None).unwrap());
+        let before = kept_before(&path);
+        assert_eq!(open(&before).unwrap().newest, entry(70));
+        assert!(cell_beside(&before).exists() && !cell_beside(&path).exists());
     }
 
     #[test]

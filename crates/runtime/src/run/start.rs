@@ -173,6 +173,9 @@ impl Run {
             resumed.start(&mut closed);
         }
         let fresh = resumed.as_ref().map(|resumed| Event::Resumed(resumed.to_string()));
+        if let Some(event) = &fresh {
+            observer.message(&event.to_string());
+        }
         let operator = Operator::new(robot.is_elsewhere());
         let runner = Runner::new(publisher);
         let asked = Inputs::of(&config, &name, &mut *observer)?;
