@@ -102,8 +102,8 @@ fn of_page(outcome: &Outcome) -> Value {
 }
 
 /// The lines of the console's band in the picture of a failure.
-fn of_console(outcome: &Outcome, failure: &FailureResult) -> Vec<String> {
-    let tick = failure.account.first.shown_at().to_string();
+fn of_console(outcome: &Outcome, failure: &FailureResult, last: u64) -> Vec<String> {
+    let tick = failure.account.first.shown_at().min(last).to_string();
     let mut console = Command::new(rcs_console());
     console.args(["--colour", "never", "--once", "ladder", "--tick", &tick, "--log"]).arg(&outcome.log);
     let output = console.output().expect("rcs-console can be started");
@@ -111,11 +111,14 @@ fn of_console(outcome: &Outcome, failure: &FailureResult) -> Vec<String> {
 }
 
 /// Assert that the console shows the first failure as the state in its picture.
-fn assert_shown_by_console(what: &str, outcome: &Outcome, failure: &FailureResult) {
-    let band = of_console(outcome, failure);
+fn assert_shown_by_console(what: &str, outcome: &Outcome, failure: &FailureResult, last: u64) {
+    let band = of_console(outcome, failure, last);
+    assert_eq!(band.len(), 3, "{what}: the console has no picture of the failure");
     let is_stop = outcome.result["failure"]["kind"] == "emergency-stop";
     let state = if is_stop { "XX E-STOP" } else { "!! FAULT" };
-    let begin: String = failure.account.first.text.chars().take(40).collect();
+    // Of a button the band says that it is pressed.
+    let text = failure.account.first.text.split(" was pressed").next().unwrap_or_default();
+    let begin: String = text.chars().take(40).collect();
     assert!(band[0].contains(state) && band[0].contains(&begin), "{what}: {state} {begin:?} in {band:?}");
     assert!(band[1].contains("line ") || outcome.result["commands"] == json!([]), "{what}: {band:?}");
     assert!(band[2].starts_with(" next: "), "{what}: {band:?}");
@@ -153,7 +156,7 @@ pub fn assert_same_account(what: &str, outcome: &Outcome) {
         assert_eq!(why["failure"][field], chain["report"][field], "{what}: {field}");
     }
     assert_eq!(info["failure"]["remedy"], failure["remedy"], "{what}");
-    assert_shown_by_console(what, outcome, &result);
+    assert_shown_by_console(what, outcome, &result, info["ticks"].as_u64().expect("a number"));
     let first_cause = &why["failure"]["first_cause"];
     let is_fault = |told: &Value| told.as_str().is_some_and(|text| text.contains("fault 1 begins"));
     assert!(!is_fault(&failure["text"]) && !is_fault(first_cause), "{what}: {failure} {first_cause}");

@@ -101,7 +101,7 @@ fn pulled_cable_is_explained() {
         ],
     );
     let (answer, _) = why(&outcome);
-    assert!(answer["faults"][0]["tick"].as_u64().is_some_and(|tick| tick <= 200), "{answer}");
+    assert!(answer["faults"][0]["tick"].as_u64().is_some_and(|tick| tick <= 201), "{answer}");
     let account = [&answer["failure"]["first_cause"], &answer["world"]];
     assert!(
         account.iter().all(|part| !part.to_string().contains("fault")),
