@@ -6,9 +6,12 @@ use clap::{Args, Parser, Subcommand};
 
 use neighbours::line::Address;
 
-use crate::address::{Allow, CellAddress, Endpoint, Name, Right};
+use crate::{
+    address::{Allow, CellAddress, Endpoint, Name, Right},
+    page::people::{PersonName, Role},
+};
 
-/// Carries the mailboxes of a controller between machines, over Zenoh with TLS.
+/// Carries the mailboxes of a controller between machines, over Zenoh with TLS, and shows its page to persons.
 #[derive(Debug, Parser)]
 #[command(
     name = "rcs-gateway",
@@ -29,6 +32,12 @@ Examples:
                                        such a program
   rcs-gateway monitor tls/10.0.0.1:7447 --keys keys
                                        a monitor
+  rcs-run --clock real --live --live-socket unix:/run/user/1000/t3-live.sock --operator network
+                                       a controller with a page
+  rcs-gateway person add anna --role operator --people people
+                                       a person who may open the page; prints the secret once
+  rcs-gateway page t3 tls/10.0.0.1:8443 --run unix:/run/user/1000/t3-live.sock --keys keys --people people
+                                       the page, at https://10.0.0.1:8443/
 
 Exit status: 0 ended by a signal; 2 usage, keys, or an address that cannot be used."
 )]
@@ -49,6 +58,63 @@ pub enum Command {
     Router(RouterArguments),
     /// Print the state of cells, a line each
     Monitor(MonitorArguments),
+    /// Serve the page of a run to persons on the network of the cell, for their browsers
+    Page(PageArguments),
+    /// Persons who may open the page, and their secrets
+    #[command(subcommand)]
+    Person(PersonCommand),
+}
+
+/// Arguments of `page`.
+#[derive(Clone, Debug, Args)]
+pub struct PageArguments {
+    /// Name of the cell, and of its certificate: CELL.pem and CELL.key in the directory of keys
+    #[arg(value_name = "CELL")]
+    pub cell: Name,
+    /// Where browsers connect: tls/IP:PORT. The page is at https://IP:PORT/
+    #[arg(value_name = "ENDPOINT")]
+    pub endpoint: Endpoint,
+    /// Where the run listens, its --live-socket: unix:PATH. The gateway may be started first
+    #[arg(long, value_name = "ADDRESS")]
+    pub run: Address,
+    /// Directory with ca.pem, CELL.pem and CELL.key; tools/keys.sh makes it
+    #[arg(long, value_name = "DIR")]
+    pub keys: PathBuf,
+    /// File with the persons; rcs-gateway person makes it. A change takes effect within a second
+    #[arg(long, value_name = "FILE")]
+    pub people: PathBuf,
+}
+
+/// What is done with the file of persons.
+#[derive(Clone, Debug, Subcommand)]
+pub enum PersonCommand {
+    /// Add a person, and print the secret once
+    Add {
+        /// Name of the person: 1 to 16 letters, digits, -, _ and .
+        #[arg(value_name = "NAME")]
+        name: PersonName,
+        /// Whether the person may operate the run
+        #[arg(long, value_enum)]
+        role: Role,
+        /// File with the persons, created if missing
+        #[arg(long, value_name = "FILE")]
+        people: PathBuf,
+    },
+    /// Remove a person; a gateway ends the person's connections within a second
+    Remove {
+        /// Name of the person
+        #[arg(value_name = "NAME")]
+        name: PersonName,
+        /// File with the persons
+        #[arg(long, value_name = "FILE")]
+        people: PathBuf,
+    },
+    /// Print the persons and their roles, a line each
+    List {
+        /// File with the persons
+        #[arg(long, value_name = "FILE")]
+        people: PathBuf,
+    },
 }
 
 /// Arguments of `router`.

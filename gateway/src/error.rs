@@ -7,6 +7,7 @@ use neighbours::line::Address;
 use crate::{
     address::{CellAddress, Endpoint, Name},
     keys::KeysError,
+    page::people::PeopleError,
 };
 
 /// Why a gateway cannot be started.
@@ -15,6 +16,20 @@ pub enum Error {
     /// Keys or certificates cannot be used.
     #[error(transparent)]
     Keys(#[from] KeysError),
+    /// The file of persons cannot be used.
+    #[error(transparent)]
+    People(#[from] PeopleError),
+    /// The key and the certificate do not serve TLS.
+    #[error(
+        "{}: the certificate cannot be used for TLS: {reason}; tools/keys.sh makes keys and certificates",
+        .certificate.display()
+    )]
+    Tls {
+        /// The certificate.
+        certificate: std::path::PathBuf,
+        /// The reason of the TLS library.
+        reason: String,
+    },
     /// The endpoint cannot be used.
     #[error("{endpoint}: {source}")]
     Endpoint {

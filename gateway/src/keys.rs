@@ -153,14 +153,11 @@ impl Keys {
     fn check_key(&self) -> Result<(), KeysError> {
         let path = self.key.clone();
         let found = fs::metadata(&path).map_err(|source| KeysError::File { path: path.clone(), source })?;
-        let expected = geteuid().as_raw();
-        if found.uid() != expected {
-            return Err(KeysError::Owner { path, expected, found: found.uid() });
+        match access(&found) {
+            Access::Private => Ok(()),
+            Access::OfUser(found) => Err(KeysError::Owner { path, expected: geteuid().as_raw(), found }),
+            Access::Open(mode) => Err(KeysError::Open { path, mode }),
         }
-        if found.mode() & OTHERS != 0 {
-            return Err(KeysError::Open { path, mode: found.mode() & 0o777 });
-        }
-        Ok(())
     }
 
     fn check_certificate(&self, found: &X509Certificate<'_>) -> Result<(), KeysError> {
@@ -176,6 +173,27 @@ impl Keys {
             return Err(KeysError::Expired { path, from, until });
         }
         Ok(())
+    }
+}
+
+/// Who can read a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// This user only.
+    Private,
+    /// It belongs to another user.
+    OfUser(u32),
+    /// Other users can read it; its mode.
+    Open(u32),
+}
+
+/// Who can read a file with these metadata.
+#[must_use]
+pub fn access(found: &fs::Metadata) -> Access {
+    match (found.uid(), found.mode()) {
+        (user, _) if user != geteuid().as_raw() => Access::OfUser(user),
+        (_, mode) if mode & OTHERS != 0 => Access::Open(mode & 0o777),
+        _ => Access::Private,
     }
 }
 

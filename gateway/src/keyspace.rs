@@ -98,19 +98,27 @@ const CLAIM: usize = 16;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ClaimId(String);
 
+/// 32 random hexadecimal digits: 128 bits.
+///
+/// # Errors
+/// If the system has no random bytes.
+pub fn random_digits() -> Result<String, getrandom::Error> {
+    let mut random = [0; CLAIM];
+    getrandom::fill(&mut random)?;
+    Ok(random.iter().fold(String::new(), |mut text, byte| {
+        // Writing to a `String` does not fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
+}
+
 impl ClaimId {
     /// A new claim.
     ///
     /// # Errors
     /// If the system has no random bytes.
     pub fn random() -> Result<Self, getrandom::Error> {
-        let mut random = [0; CLAIM];
-        getrandom::fill(&mut random)?;
-        Ok(Self(random.iter().fold(String::new(), |mut text, byte| {
-            // Writing to a `String` does not fail.
-            let _ = write!(text, "{byte:02x}");
-            text
-        })))
+        random_digits().map(Self)
     }
 
     /// A received claim; `None` if it is not one. It becomes a part of keys.

@@ -14,7 +14,7 @@ use tracing::{
     span,
 };
 
-use crate::error::without_places;
+use crate::{budget::Budget, error::without_places};
 
 /// Number of lines that a source may write at once.
 const BURST: u32 = 10;
@@ -34,35 +34,7 @@ pub enum Source {
     Zenoh,
 }
 
-/// Lines that a source may still write.
-#[derive(Clone, Copy, Debug)]
-struct Budget {
-    left: u32,
-    since: Option<Instant>,
-    omitted: u64,
-}
-
-impl Budget {
-    const FULL: Self = Self { left: BURST, since: None, omitted: 0 };
-
-    /// Asks for a line: the number of lines that were left out before it, or `None` if it is left out, too.
-    fn take(&mut self, now: Instant) -> Option<u64> {
-        let since = *self.since.get_or_insert(now);
-        let periods = now.saturating_duration_since(since).as_millis() / REFILL.as_millis();
-        if periods > 0 {
-            self.left = self.left.saturating_add(u32::try_from(periods).unwrap_or(BURST)).min(BURST);
-            self.since = Some(now);
-        }
-        if self.left == 0 {
-            self.omitted += 1;
-            return None;
-        }
-        self.left -= 1;
-        Some(std::mem::take(&mut self.omitted))
-    }
-}
-
-static BUDGETS: Mutex<[Budget; 3]> = Mutex::new([Budget::FULL; 3]);
+static BUDGETS: Mutex<[Budget; 3]> = Mutex::new([Budget::new(BURST, REFILL); 3]);
 
 /// Writes a line, unless its source has written too many.
 pub fn write(source: Source, text: &dyn fmt::Display) {
@@ -139,21 +111,4 @@ impl Subscriber for Warnings {
 pub fn hear_zenoh() {
     // It fails only if another subscriber was set before, and this program sets one.
     let _ = tracing::subscriber::set_global_default(Warnings);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn budget_limits_a_flood_and_counts_omitted_lines() {
-        let (mut budget, start) = (Budget::FULL, Instant::now());
-        let written = (0..1000).filter(|_| budget.take(start).is_some()).count();
-        assert_eq!(written, 10);
-        assert_eq!(budget.take(start + REFILL), Some(990));
-        assert_eq!(budget.take(start + REFILL), None);
-        assert_eq!(budget.take(start + 1000 * REFILL), Some(1));
-        let written = (0..1000).filter(|_| budget.take(start + 1000 * REFILL).is_some()).count();
-        assert_eq!(written, 9);
-    }
 }

@@ -7,6 +7,7 @@
 #![forbid(unsafe_code)]
 
 mod address;
+mod budget;
 mod cli;
 mod config;
 mod connect;
@@ -19,6 +20,8 @@ mod lines;
 mod log;
 mod monitor;
 mod pace;
+mod page;
+mod person;
 mod refusal;
 mod relay;
 mod router;
@@ -52,6 +55,8 @@ fn main() -> ExitCode {
         Command::Connect(arguments) => connect::connect(arguments),
         Command::Router(arguments) => router::route(arguments),
         Command::Monitor(arguments) => monitor::monitor(arguments),
+        Command::Page(arguments) => page::page(arguments),
+        Command::Person(command) => person::run(command),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -82,9 +82,12 @@ async function picture(page, name) {
   if (PICTURES) writeFileSync(join(PICTURES, `${name}.png`), await page.picture());
 }
 
-/** A page in which a person has logged in; its errors so far are forgotten. */
+/** The view in which a person operates; the login does not keep the view of an address. */
+const OPERATE = `location.hash = 'view=operate'`;
+
+/** A page in which a person logs in. */
 async function logIn(name, secret = secrets[name], size = {}) {
-  const page = await browser.open(`${address}#view=operate`, size);
+  const page = await browser.open(address, size);
   await page.until(`location.pathname === '/login' && document.querySelector('input[name=secret]')`);
   for (const [field, text] of [
     ['name', name],
@@ -101,6 +104,7 @@ async function logIn(name, secret = secrets[name], size = {}) {
 test('viewer_behind_gateway_sees_the_run_and_no_buttons', { skip }, async () => {
   const page = await logIn('vera');
   await page.until(state('RUNNING'));
+  await page.value(OPERATE);
   await page.until(`document.querySelector('#controls')?.innerText.includes('log in as an operator')`);
   assert.equal(await page.value(`document.querySelectorAll('[data-operate], #token').length`), 0);
   await picture(page, 'viewer');
@@ -109,8 +113,9 @@ test('viewer_behind_gateway_sees_the_run_and_no_buttons', { skip }, async () => 
 
 test('operator_behind_gateway_operates_without_a_token_until_logging_out', { skip }, async (t) => {
   const page = await logIn('anna', secrets.anna, { width: 1024, height: 768, touch: true });
-  await page.until(`document.querySelector('.large.stop')`);
   await page.until(state('RUNNING'));
+  await page.value(OPERATE);
+  await page.until(`document.querySelector('.large.stop')`);
   await page.press('.large.stop');
   await page.until(state('STOPPED'));
   await page.press('.large.go', 900);

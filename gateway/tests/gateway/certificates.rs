@@ -10,7 +10,7 @@ use std::{
 use crate::shop::{CELL, Shop, make_keys, within};
 
 /// Connects with openssl; returns all that it prints.
-fn openssl(shop: &Shop, arguments: &[&str]) -> String {
+pub fn openssl(shop: &Shop, arguments: &[&str]) -> String {
     let mut command = Command::new("openssl");
     command.args(["s_client", "-connect", &format!("127.0.0.1:{}", shop.port)]);
     command.arg("-CAfile").arg(shop.path("keys/ca.pem")).args(arguments);

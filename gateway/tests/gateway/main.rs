@@ -3,6 +3,7 @@
 //! They need `rcs-run` and `rcs-neighbour`: `cargo build --release --workspace` in the repository.
 
 mod attacks;
+mod browser;
 mod certificates;
 mod claims;
 mod crowds;
@@ -10,6 +11,7 @@ mod cuts;
 mod line;
 mod native;
 mod operators;
+mod page;
 mod script;
 mod shop;
 mod status;
