@@ -218,7 +218,7 @@ test('failed_log_opens_at_its_cause_with_the_chain', async () => {
 
 test('ten_pages_beside_a_run_change_no_bit', async () => {
   // Ten pages on few processors can cost slots of the grid, which stop the robot by default.
-  const ticks = ['--ticks', '700', '--json', '--operator', 'none', '--overrun', 'count'];
+  const ticks = ['--ticks', '400', '--json', '--operator', 'none', '--overrun', 'count'];
   const alone = spawnSync(
     join(PROGRAMS, 'rcs-run'),
     ['linkbar', '--clock', 'real', '--log', 'none', ...ticks],
@@ -233,6 +233,6 @@ test('ten_pages_beside_a_run_change_no_bit', async () => {
   await Promise.all(pages.map((page) => page.until(`document.querySelector('.live')`)));
   const printed = JSON.parse(await live.ended);
   assert.equal(printed.digest, JSON.parse(String(alone.stdout)).digest);
-  assert.equal(printed.ticks, 700);
+  assert.equal(printed.ticks, 400);
   await Promise.all(pages.map((page) => page.close()));
 });

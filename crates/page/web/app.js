@@ -384,6 +384,10 @@ async function watch(name, bytes) {
   begin();
 }
 
+// A page that has failed must not look alive: its frames have ended.
+addEventListener('error', ({ error }) => error && fail(error));
+addEventListener('unhandledrejection', ({ reason }) => fail(reason));
+
 find()
   .then((found) => {
     if (!found) return ask(show);

@@ -32,6 +32,8 @@ export function notices(run, ui, live) {
       ),
       h('p', {}, 'STOP cannot be sent from here. Use the emergency stop at the robot.'),
       loss.attempt ? h('p', { class: 'dim' }, `Trying again: ${loss.attempt}`) : null,
+      // Behind the gateway a login may have ended.
+      location.protocol === 'https:' ? h('p', {}, h('a', { href: '/login' }, 'Log in again')) : null,
     );
   }
   if (ui.following) return null;

@@ -9,7 +9,13 @@ export function fail(error) {
   const text = error instanceof Error ? error.message : String(error);
   patch(
     start,
-    h('div', { class: 'notice', role: 'alert' }, h('h1', {}, 'The log cannot be shown'), h('p', {}, text)),
+    h(
+      'div',
+      { class: 'notice', role: 'alert' },
+      h('h1', {}, 'The page has failed'),
+      h('p', {}, text),
+      h('p', {}, 'Reload it. If it shows a run, the robot may still be moving.'),
+    ),
   );
 }
 
