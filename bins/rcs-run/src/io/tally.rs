@@ -8,11 +8,13 @@ use serde::Serialize;
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     Good,
+    /// A device with at most one failed exchange in a hundred.
+    Usable,
     /// An analog input did not change by a bit: the sensor may be absent.
     Steady,
     /// A converter at an end of its range: a broken wire, or a wrong `raw`.
     BrokenWire,
-    /// A device with failed exchanges, or slower than its answer timeout.
+    /// A device with more failed exchanges.
     NotUsable,
     /// A device that could not be set up.
     NotReady,
@@ -26,6 +28,7 @@ impl Verdict {
     const fn text(self) -> &'static str {
         match self {
             Self::Good => "good",
+            Self::Usable => "usable: exchanges have failed",
             Self::Steady => "steady: is the sensor there?",
             Self::BrokenWire => "BROKEN WIRE, or a wrong `raw`",
             Self::NotUsable => "NOT USABLE",

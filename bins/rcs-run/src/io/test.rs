@@ -30,6 +30,8 @@ use crate::rcs_run::{
     interrupt::interruption,
 };
 
+/// A device of which more than one exchange in so many fails is not usable.
+const MOST_FAILED_OF: u64 = 100;
 /// Registers of the identity of a BK9000.
 const IDENTITY: usize = 7;
 
@@ -43,7 +45,7 @@ pub fn test(arguments: &IoTestArguments) -> Result<ExitCode, Error> {
     let mut tally = Tally { mapping: bench.mapping.name.clone(), ..Tally::default() };
     let ticks = Duration::from_secs(arguments.seconds.into()).as_millis() / PERIOD.as_millis();
     inputs(&bench, u32::try_from(ticks).unwrap_or(u32::MAX), &mut tally, &stop);
-    let is_ready = |index: usize| tally.devices[index].verdict == Verdict::Good;
+    let is_ready = |index: usize| tally.devices[index].hindrance.is_empty();
     let ready: Vec<usize> = (0..bench.mapping.devices.len()).filter(|index| is_ready(*index)).collect();
     let asks = arguments.outputs || arguments.watchdog;
     if asks && !stop.load(Ordering::Relaxed) {
@@ -61,8 +63,9 @@ pub fn test(arguments: &IoTestArguments) -> Result<ExitCode, Error> {
         for index in ready {
             if bench.mapping.devices[index].plan.kind == Kind::Bk9000 && !stop.load(Ordering::Relaxed) {
                 tally.devices[index].fallback_ms = fallback(&bench, index);
-                let has_fired = tally.devices[index].fallback_ms.is_some();
-                tally.devices[index].verdict = if has_fired { Verdict::Good } else { Verdict::NoEffect };
+                if tally.devices[index].fallback_ms.is_none() {
+                    tally.devices[index].verdict = Verdict::NoEffect;
+                }
             }
         }
     }
@@ -128,7 +131,7 @@ fn inputs(bench: &Bench, exchanges: u32, tally: &mut Tally, stop: &AtomicBool) {
         next += PERIOD;
         thread::sleep(next.saturating_duration_since(Instant::now()));
     }
-    for (entry, (device, planned)) in tally.devices.iter_mut().zip(tested.into_iter().zip(&mapping.devices)) {
+    for (entry, device) in tally.devices.iter_mut().zip(tested) {
         let Some(Tested { probe, mut times }) = device else { continue };
         let counters = probe.report().counters;
         (entry.exchanges, entry.failures) = (counters.exchanges, counters.failures);
@@ -137,9 +140,11 @@ fn inputs(bench: &Bench, exchanges: u32, tally: &mut Tally, stop: &AtomicBool) {
             times.get(times.len() * part / 100).or(times.last()).map_or(0.0, |time| time.as_secs_f64() * 1e3)
         };
         entry.exchange_ms = [ms(50), ms(99), ms(100)];
-        if counters.failures > 0 || entry.exchange_ms[0] > f64::from(planned.timeout_ms) {
-            entry.verdict = Verdict::NotUsable;
-        }
+        entry.verdict = match u64::from(counters.failures) * MOST_FAILED_OF {
+            0 => Verdict::Good,
+            failed if failed <= u64::from(counters.exchanges) => Verdict::Usable,
+            _ => Verdict::NotUsable,
+        };
         probe.end();
     }
     tally.inputs = seen.into_iter().flatten().map(judged).collect();
