@@ -163,6 +163,7 @@ fn the_list_of_json_outputs_is_complete() {
         "rcs-run",
         "rcs-run campaign",
         "rcs-run check",
+        "rcs-run io-test",
         "rcs-run jobs",
         "rcs-run latency",
         "rcs-run link-test",
