@@ -166,6 +166,13 @@ impl ContactCheck {
         Self { farthest: 0.0, ..self }
     }
 
+    /// Permit the present contacts, in a run that is resumed: the run before has judged them.
+    pub fn permit(&mut self, contacts: &[Contact]) {
+        for contact in contacts.iter().filter(|contact| contact.touches()) {
+            self.allowed.insert(contact.pair(), Allowance { depth: contact.depth, free: false });
+        }
+    }
+
     /// The commands to which a tick's contacts are attributed, from common memory after the tick.
     pub fn commands(&mut self, memory: &CommonMemory) -> Commands {
         self.commands = self.commands.after(memory);

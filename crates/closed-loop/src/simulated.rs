@@ -170,6 +170,14 @@ impl<L> ClosedLoop<L> {
         settled
     }
 
+    /// Note that the run is resumed: its contacts are attributed to the command in the buffers, and the present ones
+    /// are no news.
+    pub fn note_resumed(&mut self) {
+        let contacts = &mut self.checks.contacts;
+        contacts.commands(self.course.memory());
+        contacts.permit(self.workstation.cell.contacts());
+    }
+
     /// Note that an operator has changed these parts after the last tick.
     pub fn note_changed(&mut self, parts: Vec<u32>) {
         self.checks.truth.note_changed(self.course.tick().next(), parts);

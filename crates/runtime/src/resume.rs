@@ -164,6 +164,7 @@ impl Resumed {
         let entry = self.entry();
         let memory = self.contents.memory(entry.tick);
         closed.resume(entry.tick, &memory, &entry.hws, entry.generation);
+        closed.note_resumed();
     }
 }
 

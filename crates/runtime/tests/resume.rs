@@ -82,6 +82,15 @@ fn interrupted_calibration_does_not_start_by_itself() {
 }
 
 #[test]
+fn contact_at_the_drum_is_no_collision_of_the_resumed_run() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = in_directory(&directory);
+    cut_off("tool-change", 2_730, &path);
+    let (_, outcome) = resumed("tool-change", &path);
+    assert!(outcome.result.contacts.is_empty(), "{:?}", outcome.result.contacts);
+}
+
+#[test]
 fn finished_run_is_not_resumed() {
     let directory = tempfile::tempdir().unwrap();
     let path = in_directory(&directory);
