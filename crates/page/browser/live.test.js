@@ -36,7 +36,8 @@ class Live {
   static async start(options = ['--operator', 'network'], port = 0) {
     const live = new Live();
     const log = join(scratch, `run-${++runs}.mcap`);
-    const all = ['linkbar', '--clock', 'real', '--live', String(port), '--log', log, ...options];
+    const clock = options.includes('--clock') ? [] : ['--clock', 'real'];
+    const all = ['linkbar', ...clock, '--live', String(port), '--log', log, ...options];
     live.process = spawn(join(PROGRAMS, 'rcs-run'), all, { cwd: scratch });
     let [said, printed] = ['', ''];
     live.process.stdout.on('data', (part) => (printed += part));
@@ -84,6 +85,8 @@ const ORANGE = `(async () => {
 
 test('live_page_shows_robot_lit_row_and_moving_time', async () => {
   const live = await Live.start([]);
+  const served = await (await fetch(live.address)).text();
+  assert.ok(served.length < 400_000, `${served.length} bytes`);
   const page = await browser.open(`${live.address}#view=explain&process=t3i`);
   await page.until(state('RUNNING'));
   await page.until(`${ORANGE}.then((found) => found > ${ROBOT})`);
@@ -156,6 +159,18 @@ test('operator_stops_goes_pauses_turns_the_knob_and_sends_lines', async () => {
   await live.end();
 });
 
+/** Counts the draw calls of the picture of the cell. */
+const COUNT_CALLS = `{
+  window.calls = 0;
+  for (const name of ['drawArrays', 'drawElements']) {
+    const draw = WebGL2RenderingContext.prototype[name];
+    WebGL2RenderingContext.prototype[name] = function (...values) {
+      window.calls++;
+      return draw.apply(this, values);
+    };
+  }
+}`;
+
 /** Notes when the page shows that the connection is lost. */
 const WATCH_LOSS = `{
   window.lostAt = 0;
@@ -211,9 +226,35 @@ test('failed_log_opens_at_its_cause_with_the_chain', async () => {
   assert.match(await page.text('.why-head'), /vision sees no object/);
   assert.match(await page.text('#table tr.fired'), /NothingSeen/);
   await page.until(`${ORANGE}.then((found) => found > ${ROBOT / 4})`);
+  await page.value(COUNT_CALLS);
+  await page.key('[', 'BracketLeft');
+  await page.until('window.calls > 0');
+  const calls = await page.value('new Promise((done) => setTimeout(() => done(window.calls), 200))');
+  assert.ok(calls <= 60, `${calls} draw calls for a tick`);
   assert.match(await page.text('.recorded'), /LOG/);
   assert.deepEqual(page.errors, []);
   await page.close();
+});
+
+test('failed_run_shows_what_its_processes_report', async () => {
+  const live = await Live.start(['--operator', 'network', '--faults', 'camera-blind', '--clock', '2x']);
+  const page = await browser.open(`${live.address}#view=operate&token=${live.token}`, {
+    width: 1200,
+    height: 600,
+  });
+  await page.until(`document.querySelector('.large.stop')`);
+  // The job waits for an operator instead of failing; a viewer is one from its first request.
+  await page.value(`document.getElementById('line').focus()`);
+  await page.type('note an operator is here');
+  await page.key('Enter', 'Enter', 13);
+  await page.until(state('FAULT'));
+  await page.value(`location.hash = 'view=trace'`);
+  await page.until(`document.querySelector('.why')?.innerText.includes('FIRST REPORT')`);
+  const chain = await page.text('.why');
+  for (const text of ['Workstation', 'Subtask', 'LOCATE-OBJ', 'vision sees no object'])
+    assert.ok(chain.includes(text), `${text} is not in ${chain}`);
+  await page.close();
+  await live.end();
 });
 
 test('ten_pages_beside_a_run_change_no_bit', async () => {

@@ -22,7 +22,7 @@ import { columnHeads, fold, ruler, tableRow } from './table-rows.js';
  */
 
 /** Pixels at letters of 14: letter, rest of a column, number, error of the estimate, score. */
-const WIDTH = { letter: 5.9, column: 22, number: 40, spare: 26, score: [54, 92, 190] };
+const WIDTH = { letter: 6.1, column: 22, number: 40, spare: 26, score: [54, 92, 190] };
 /**
  * Heights of a line of the matrix, of the list, of the list on a phone, and of all else; pixels at letters
  * of 14.
