@@ -16,7 +16,7 @@ import { bufferTopics, fieldsPane, messagesPane } from './view/lists.js';
 import { followControls, operate } from './view/operate.js';
 import { ask, fail, find } from './view/open.js';
 import { followPointers } from './view/pointer.js';
-import { paintScore } from './view/score.js';
+import { fitScore, paintScore } from './view/score.js';
 import { Session } from './view/session.js';
 import { side } from './view/side.js';
 import { consultation, tablePane } from './view/table.js';
@@ -316,6 +316,7 @@ class Page {
     const shown = consultation(this);
     if (!shown) return;
     pane.classList.toggle('bad', shown.failed);
+    fitScore(pane);
     paintScore(this, pane, shown.table.name, shown.failed, this.colour);
     showFired(pane);
   }

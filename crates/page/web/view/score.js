@@ -5,6 +5,8 @@ import { context2d } from './dom.js';
 
 /** Space at the left of the score, pixels. */
 const MARGIN = 13;
+/** Smallest width of a score, pixels. */
+const LEAST = 54;
 
 /** Ticks that a score of a width shows. @param {number} width */
 export function scoreTicks(width) {
@@ -20,6 +22,18 @@ export function scoreTicks(width) {
 export function scoreTick(x, width, tick) {
   const span = scoreTicks(width);
   return Math.round(tick - span + ((x - MARGIN) / (width - MARGIN - 2)) * span);
+}
+
+/**
+ * Take room from the score if the table needs more than was estimated.
+ * @param {HTMLElement} pane
+ */
+export function fitScore(pane) {
+  const scroll = /** @type {HTMLElement | null} */ (pane.querySelector('.table-scroll'));
+  const excess = scroll ? scroll.scrollWidth - scroll.clientWidth : 0;
+  if (!scroll || excess <= 0) return;
+  const width = parseFloat(scroll.style.getPropertyValue('--rollw'));
+  scroll.style.setProperty('--rollw', `${Math.max(LEAST, width - excess)}px`);
 }
 
 /**
