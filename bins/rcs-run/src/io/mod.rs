@@ -79,7 +79,7 @@ impl Bench {
                 let now = u64::try_from(Monotonic.now().as_nanos()).unwrap_or(u64::MAX);
                 let why = runtime::field::hindrance(&self.mapping, index, report, now);
                 let text = why.unwrap_or_else(|| format!("{} is not ready", device.name));
-                let on = (report.refusal == Some(Refusal::OutputsOn)).then_some(report.acknowledged);
+                let on = (report.refusal == Some(Refusal::OutputsOn)).then(|| Box::new(report.acknowledged));
                 return Err(Hindrance { text, on });
             }
             thread::sleep(PERIOD);
@@ -93,7 +93,7 @@ pub struct Hindrance {
     /// A sentence with the device.
     pub text: String,
     /// Its outputs, if some are on that may not be on at rest.
-    pub on: Option<OutWords>,
+    pub on: Option<Box<OutWords>>,
 }
 
 impl Hindrance {

@@ -88,7 +88,7 @@ impl Input {
 
     /// True if it changes nothing.
     pub fn is_question(&self) -> bool {
-        self.event().line().is_some_and(|line| is_question(line))
+        self.event().line().is_some_and(is_question)
     }
 
     /// Its line in the log, with the first tick in which it has an effect; `None` if it changes nothing.
