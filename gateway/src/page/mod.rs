@@ -197,7 +197,7 @@ impl Gateway {
         let origin = format!("https://{host}");
         let is_own = request.origin.as_ref().is_some_and(|found| found.eq_ignore_ascii_case(&origin));
         let is_bound = request.is_post || request.upgrade.is_some();
-        if (is_bound && !is_own) || (request.origin.is_some() && !is_own) {
+        if !is_own && (is_bound || request.origin.is_some()) {
             let found = request.origin.as_deref().unwrap_or("no page");
             let why =
                 format!("requests of the page {origin} are accepted, found {}", plain(found.as_bytes()));
