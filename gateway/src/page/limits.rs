@@ -87,7 +87,7 @@ impl Tries {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// True if an address may try. The try counts as failed until [`Tries::succeeded`].
+    /// True if an address may try. The try is a failed one until [`Tries::succeeded`].
     #[must_use]
     pub fn may_try(&self, source: Source, now: Instant) -> bool {
         let (total, own) = &mut *self.lock();
