@@ -89,7 +89,7 @@ pub struct SimulatedField {
     simulated: Vec<Simulated>,
     now: u64,
     /// Vise, machines, drum and trays behind the couplers.
-    devices: Option<Devices>,
+    devices: Option<Box<Devices>>,
     /// What arrives at these devices, and what their sensors show: a value for each output and input of the mapping.
     arrived: Vec<i64>,
     sensed: Vec<i64>,
@@ -127,7 +127,7 @@ impl SimulatedField {
     #[must_use]
     pub fn with_devices(mut self, devices: Devices, cell: &Cell) -> Self {
         devices.sense(cell, &mut self.sensed);
-        self.devices = Some(devices);
+        self.devices = Some(Box::new(devices));
         self
     }
 
@@ -150,7 +150,7 @@ impl SimulatedField {
 
     /// What the devices report to their operator, since the last call.
     pub fn messages(&mut self) -> Vec<String> {
-        self.devices.as_mut().map(Devices::messages).unwrap_or_default()
+        self.devices.as_mut().map(|devices| devices.messages()).unwrap_or_default()
     }
 
     /// The outputs of the couplers.
