@@ -82,7 +82,7 @@ impl<L> Course<L> {
         self.tick = tick;
         let (before, _) = of_tick_mut(&mut self.halves, tick.next());
         *before = *memory;
-        self.watch = Box::default();
+        *self.watch = Watch::default();
     }
 
     /// Run the next tick on its external inputs, and call `observe` after each stage. The caller must then call

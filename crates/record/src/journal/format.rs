@@ -242,7 +242,8 @@ pub fn read(bytes: &[u8]) -> Result<Contents, FormatError> {
     for number in before {
         let is_next = place(number) == place(newest.saturating_add(1));
         let is_there = matches!(at(number), Some(Slot::Entry(found)) if found.0 == number);
-        if !is_there && !(is_next && torn) {
+        let may_be_missing = is_next && torn;
+        if !is_there && !may_be_missing {
             return Err(FormatError::Gap { newest });
         }
     }
