@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use crate::{rcs_run, root};
 
-const PATIENCE: Duration = Duration::from_secs(120); // for actions that take milliseconds
+const TIME_LIMIT: Duration = Duration::from_secs(120); // for actions that take milliseconds
 
 #[must_use]
 pub fn rcs(directory: &Path, arguments: &[&str]) -> Command {
@@ -159,7 +159,7 @@ pub fn assert_cleaned(directory: &Path, run: &RunName) {
 pub fn wait_for(what: &str, mut condition: impl FnMut() -> bool) {
     let started = Instant::now();
     while !condition() {
-        assert!(started.elapsed() < PATIENCE, "not in time: {what}");
+        assert!(started.elapsed() < TIME_LIMIT, "not in time: {what}");
         thread::sleep(Duration::from_millis(1));
     }
 }

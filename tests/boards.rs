@@ -27,7 +27,7 @@ use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use whole_system_tests::{Scratch, command, rcs_run, root};
 
-const PATIENCE: Duration = Duration::from_secs(120); // of each action
+const TIME_LIMIT: Duration = Duration::from_secs(120); // of each action
 const ATTEMPTS: u32 = 20; // on a busy machine a run may end before it is observed, and is started again
 
 struct Ended {
@@ -156,7 +156,7 @@ impl Running<'_> {
 }
 
 fn wait_for<T>(what: &str, mut found: impl FnMut() -> Option<T>) -> T {
-    let deadline = Instant::now() + PATIENCE;
+    let deadline = Instant::now() + TIME_LIMIT;
     loop {
         if let Some(found) = found() {
             return found;

@@ -20,13 +20,13 @@ use rustix::{
 use tempfile::tempdir;
 use whole_system_tests::{rcs_console, rcs_run, root};
 
-const PATIENCE: Duration = Duration::from_secs(60); // of each action
+const TIME_LIMIT: Duration = Duration::from_secs(60); // of each action
 const STOPPED: Option<i32> = Some(3); // stopped by the user
 
 fn wait_for(mut condition: impl FnMut() -> bool) {
     let started = Instant::now();
     while !condition() {
-        assert!(started.elapsed() < PATIENCE, "it did not happen within a minute");
+        assert!(started.elapsed() < TIME_LIMIT, "it did not happen within a minute");
         thread::sleep(Duration::from_millis(20));
     }
 }
@@ -112,7 +112,7 @@ fn lost_terminal_ends_console_and_run() {
     }
     drop(screen);
     let begun = Instant::now();
-    while child.try_wait().unwrap().is_none() && begun.elapsed() < PATIENCE {
+    while child.try_wait().unwrap().is_none() && begun.elapsed() < TIME_LIMIT {
         thread::sleep(Duration::from_millis(20));
     }
     let _ = child.kill(); // a failed test leaves no program running

@@ -11,7 +11,7 @@ use rustix::process::{Pid, Signal, geteuid, kill_process};
 use tempfile::{TempDir, tempdir};
 use whole_system_tests::{rcs_run, root};
 
-const PATIENCE: Duration = Duration::from_secs(60); // of each action
+const TIME_LIMIT: Duration = Duration::from_secs(60); // of each action
 
 struct Runs(TempDir); // for one test, outside the directories for temporary files
 
@@ -42,7 +42,7 @@ impl Runs {
             if said.contains(text) {
                 return;
             }
-            assert!(started.elapsed() < PATIENCE, "{text:?} was expected: {said}");
+            assert!(started.elapsed() < TIME_LIMIT, "{text:?} was expected: {said}");
             thread::sleep(Duration::from_millis(50));
         }
     }
@@ -94,7 +94,7 @@ fn a_run_with_a_private_and_emptied_tmp_is_found() {
     };
     let started = Instant::now();
     while !text_of(&usual(&["status", "service"]).stdout).contains("service: tick") {
-        assert!(started.elapsed() < PATIENCE, "{}", text_of(&usual(&["status", "service"]).stderr));
+        assert!(started.elapsed() < TIME_LIMIT, "{}", text_of(&usual(&["status", "service"]).stderr));
         thread::sleep(Duration::from_millis(50));
     }
     let sent = usual(&["send", "--run", "service", "status"]);

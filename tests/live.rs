@@ -24,7 +24,7 @@ use tungstenite::{
 };
 use whole_system_tests::rcs_run;
 
-const PATIENCE: Duration = Duration::from_secs(60); // of each action
+const TIME_LIMIT: Duration = Duration::from_secs(60); // of each action
 const ONCE: [&str; 4] = ["/robot_description", "/tf_static", "/meshes", "/names"]; // at the start
 
 #[derive(Clone, Default)]
@@ -395,11 +395,11 @@ fn a_viewer_holds_a_stick_while_it_answers_and_a_delayed_request_is_refused() {
             if stick() == (0, 300) {
                 break;
             }
-            assert!(begun.elapsed() < PATIENCE, "a viewer that answers keeps the stick");
+            assert!(begun.elapsed() < TIME_LIMIT, "a viewer that answers keeps the stick");
         }
         let hangs = Instant::now(); // the viewer hangs
         while stick() != (0, 0) {
-            assert!(begun.elapsed() < PATIENCE, "a viewer that does not answer releases the stick");
+            assert!(begun.elapsed() < TIME_LIMIT, "a viewer that does not answer releases the stick");
             thread::sleep(Duration::from_millis(10));
         }
         // Its late request is not executed.
@@ -408,14 +408,14 @@ fn a_viewer_holds_a_stick_while_it_answers_and_a_delayed_request_is_refused() {
         let refused = loop {
             match operated.ask("joystick velocity 1000") {
                 Err(refused) => break refused,
-                Ok(_) => assert!(begun.elapsed() < PATIENCE, "a late request is refused"),
+                Ok(_) => assert!(begun.elapsed() < TIME_LIMIT, "a late request is refused"),
             }
             thread::sleep(Duration::from_secs(3));
         };
         assert!(refused.contains("its sender had stopped waiting"), "{refused}");
         operated.read_for(Duration::from_millis(300));
         while operated.ask("joystick velocity 500").is_err() {
-            assert!(begun.elapsed() < PATIENCE);
+            assert!(begun.elapsed() < TIME_LIMIT);
             operated.read_for(Duration::from_millis(300));
         }
         stop.store(true, std::sync::atomic::Ordering::Relaxed);

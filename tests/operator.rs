@@ -22,7 +22,7 @@ use tempfile::TempDir;
 use whole_system_tests::{copy, rcs_run, root};
 
 const SPEED: u8 = 20; // times real time: 2 ms per tick
-const PATIENCE: Duration = Duration::from_secs(60); // of each action
+const TIME_LIMIT: Duration = Duration::from_secs(60); // of each action
 
 fn unused_name() -> RunName {
     static COUNT: AtomicU64 = AtomicU64::new(0);
@@ -61,7 +61,7 @@ impl Cell {
         loop {
             match Client::connect(&operator_socket(&self.name), &name.parse().unwrap()) {
                 Ok(client) => return client,
-                Err(error) => assert!(begun.elapsed() < PATIENCE, "{error}"),
+                Err(error) => assert!(begun.elapsed() < TIME_LIMIT, "{error}"),
             }
             thread::sleep(Duration::from_millis(5));
         }
@@ -86,7 +86,7 @@ fn wait_for(client: &mut Client, text: &str) -> String {
         if status.contains(text) {
             return status;
         }
-        assert!(begun.elapsed() < PATIENCE, "{text:?} did not come: {status}");
+        assert!(begun.elapsed() < TIME_LIMIT, "{text:?} did not come: {status}");
         thread::sleep(Duration::from_millis(10));
     }
 }
@@ -107,7 +107,7 @@ fn go_on(client: &mut Client) {
     let begun = Instant::now();
     while let Err(why) = client.ask("job go").unwrap() {
         assert!(why.contains("is still executed"), "{why}");
-        assert!(begun.elapsed() < PATIENCE, "{why}");
+        assert!(begun.elapsed() < TIME_LIMIT, "{why}");
         thread::sleep(Duration::from_millis(20));
     }
 }
@@ -197,7 +197,7 @@ fn operator_restarts_the_robot_after_an_emergency_stop_and_the_job_continues() {
         let begun = Instant::now();
         // A key is accepted after the effect of the previous one is complete.
         while let Err(why) = client.ask(&format!("panel {key}")).unwrap() {
-            assert!(begun.elapsed() < PATIENCE, "{key}: {why}");
+            assert!(begun.elapsed() < TIME_LIMIT, "{key}: {why}");
             thread::sleep(Duration::from_millis(20));
         }
         wait_ticks(&mut client, 10);
@@ -214,7 +214,7 @@ fn operator_restarts_the_robot_after_an_emergency_stop_and_the_job_continues() {
 fn ask_until(client: &mut Client, line: &str, meanwhile: &str) {
     let begun = Instant::now();
     while let Err(why) = client.ask(line).unwrap() {
-        assert!(why.contains(meanwhile) && begun.elapsed() < PATIENCE, "{line}: {why}");
+        assert!(why.contains(meanwhile) && begun.elapsed() < TIME_LIMIT, "{line}: {why}");
         thread::sleep(Duration::from_millis(10));
     }
 }
@@ -388,7 +388,7 @@ fn ask_until_refused(client: &mut Client, line: &str, why: &str) {
     loop {
         match client.ask(line).unwrap() {
             Err(refused) if refused.contains(why) => return,
-            other => assert!(begun.elapsed() < PATIENCE, "{line}: {other:?}"),
+            other => assert!(begun.elapsed() < TIME_LIMIT, "{line}: {other:?}"),
         }
         thread::sleep(Duration::from_millis(10));
     }
@@ -453,7 +453,7 @@ fn the_rotary_table_is_started_up_at_its_panel() {
         let begun = Instant::now();
         let stands = |inputs: ExternalInputs| inputs.devices.pedestal.motor_counter == -2000;
         while !run.external().is_ok_and(stands) {
-            assert!(begun.elapsed() < PATIENCE, "its counter should read -20.00");
+            assert!(begun.elapsed() < TIME_LIMIT, "its counter should read -20.00");
             thread::sleep(Duration::from_millis(5));
         }
     };
@@ -483,7 +483,7 @@ fn joystick(run: &Attached) -> (u8, (i16, i16), u16) {
 fn wait_for_box(run: &Attached, wanted: impl Fn((u8, (i16, i16), u16)) -> bool) {
     let begun = Instant::now();
     while !wanted(joystick(run)) {
-        assert!(begun.elapsed() < PATIENCE, "{:?}", joystick(run));
+        assert!(begun.elapsed() < TIME_LIMIT, "{:?}", joystick(run));
         thread::sleep(Duration::from_millis(4));
     }
 }
@@ -507,7 +507,7 @@ fn motion_by_hand_ends_with_its_session() {
         if answer.contains("stick and buttons are released, and the frame is off") {
             break;
         }
-        assert!(begun.elapsed() < PATIENCE, "{answer}");
+        assert!(begun.elapsed() < TIME_LIMIT, "{answer}");
     }
     wait_for_box(&run, is_free);
     ask(&mut anna, &HELD); // silence: the session and its command remain
@@ -617,7 +617,7 @@ fn a_command_to_a_stopped_run_is_discarded_on_resume() {
     let mut client = loop {
         match Client::connect(&operator_socket(&name), &"anna".parse().unwrap()) {
             Ok(client) => break client,
-            Err(error) => assert!(begun.elapsed() < PATIENCE, "{error}"),
+            Err(error) => assert!(begun.elapsed() < TIME_LIMIT, "{error}"),
         }
         thread::sleep(Duration::from_millis(20));
     };
@@ -806,7 +806,7 @@ fn a_command_right_after_a_motion_by_hand_waits_for_the_robot() {
         ask(&mut client, &["joystick frame OFF"]);
         let begun = Instant::now();
         while let Err(why) = client.ask("MOVE -- 0 -- 0 0 HOME 0 -- 0").unwrap() {
-            assert!(why.contains("coming to rest") && begun.elapsed() < PATIENCE, "{why}");
+            assert!(why.contains("coming to rest") && begun.elapsed() < TIME_LIMIT, "{why}");
         }
         wait_ticks(&mut client, 60);
         ask(&mut client, &["PAUSE"]);

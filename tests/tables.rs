@@ -213,14 +213,15 @@ fn align_variables(rows: &[Row], at: usize, texts: &mut [String]) {
             }
             continue;
         }
-        let goes_on = |row: &Row| row.conditions.len() > at + 1;
+        let has_next = |row: &Row| row.conditions.len() > at + 1;
         for (row, text) in run.iter().zip(&mut *texts) {
             text.push_str(&condition(&row.conditions[at]));
-            text.push_str(if goes_on(row) { "," } else { "" });
+            text.push_str(if has_next(row) { "," } else { "" });
         }
-        let width = run.iter().zip(&*texts).filter(|(row, _)| goes_on(row)).map(|(_, text)| text.len()).max();
+        let width =
+            run.iter().zip(&*texts).filter(|(row, _)| has_next(row)).map(|(_, text)| text.len()).max();
         for (row, text) in run.iter().zip(&mut *texts) {
-            if goes_on(row) {
+            if has_next(row) {
                 *text = format!("{text:0$} ", width.unwrap_or_default());
             }
         }

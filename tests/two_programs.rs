@@ -13,7 +13,7 @@ use std::{
 use serde_json::Value;
 use whole_system_tests::{rcs_cell, rcs_run, root};
 
-const PATIENCE: Duration = Duration::from_secs(60);
+const TIME_LIMIT: Duration = Duration::from_secs(60);
 /// A person fills a tray, the vise moves, and the robot goes home.
 const JOB: &str = "** tray UNIT_1 4 LINKBAR1_BH\n\
                    ** vise partial PFIXTURE\n\
@@ -58,7 +58,7 @@ fn job_is_finished_by_two_programs_with_nothing_simulated() {
     let (lines, screen) = mpsc::channel();
     let output = BufReader::new(cell.0.stdout.take().expect("piped"));
     thread::spawn(move || output.lines().map_while(Result::ok).try_for_each(|line| lines.send(line)));
-    let first = screen.recv_timeout(PATIENCE).expect("the cell is ready");
+    let first = screen.recv_timeout(TIME_LIMIT).expect("the cell is ready");
     let is_ready = |line: &str| line.starts_with("[station] ready");
     assert!(is_ready(&first) || screen.iter().any(|line| is_ready(&line)), "{first}");
     let mut console = cell.0.stdin.take().expect("piped");

@@ -23,7 +23,7 @@ use serde_json::Value;
 use sessions::network::{Address, Peer, PeerError, Received, Role};
 use whole_system_tests::{Scratch, rcs_run, root};
 
-pub const PATIENCE: Duration = Duration::from_secs(120); // for actions that take milliseconds
+pub const TIME_LIMIT: Duration = Duration::from_secs(120); // for actions that take milliseconds
 
 pub struct Controller {
     pub child: Child,
@@ -85,7 +85,7 @@ impl Controller {
         loop {
             match self.try_connect(role) {
                 Err(PeerError::Disconnected(why)) if why.ends_with("is connected already") => {
-                    assert!(started.elapsed() < PATIENCE, "{why}");
+                    assert!(started.elapsed() < TIME_LIMIT, "{why}");
                     thread::sleep(Duration::from_millis(10));
                 }
                 peer => return peer.expect("it waits"),
@@ -94,7 +94,7 @@ impl Controller {
     }
 
     pub fn try_connect(&self, role: Role) -> Result<Peer, PeerError> {
-        Peer::connect_within(PATIENCE, &self.address, role)
+        Peer::connect_within(TIME_LIMIT, &self.address, role)
     }
 
     pub fn kill(mut self) -> Scratch {

@@ -15,7 +15,7 @@ use rcs_core::name::Name16;
 use rustix::process::{Pid, Signal, kill_process};
 use sessions::network::{Received, Role};
 
-use super::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
+use super::bench::{Controller, Ended, TIME_LIMIT, Workstation, attend, bare};
 
 const TOO_LONG: [&str; 3] = ["--json", "--ticks", "20000"]; // for runs that continue by mistake
 
@@ -200,12 +200,12 @@ fn motion_by_hand_ends_with_the_workstation_controller_that_commands_it() {
     workstation.begin_in_cell("joystick stick 0 300 36000");
     let begun = Instant::now();
     while shown() != (true, 0, 300) {
-        assert!(begun.elapsed() < PATIENCE, "{:?}", shown());
+        assert!(begun.elapsed() < TIME_LIMIT, "{:?}", shown());
         workstation.tick();
     }
     drop(workstation);
     while shown() != (false, 0, 0) {
-        assert!(begun.elapsed() < PATIENCE, "{:?}", shown());
+        assert!(begun.elapsed() < TIME_LIMIT, "{:?}", shown());
         thread::sleep(Duration::from_millis(10));
     }
     controller.kill();

@@ -21,7 +21,7 @@ use sessions::network::{Address, PeerError, connect_operator};
 use sessions::operator::{Client, ClientError};
 use whole_system_tests::{Scratch, rcs_run, root};
 
-use super::bench::{Controller, PATIENCE};
+use super::bench::{Controller, TIME_LIMIT};
 
 const JOB: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
 
@@ -70,7 +70,7 @@ fn admission(address: &Address) -> Result<UnixStream, PeerError> {
     loop {
         match connect_operator(address) {
             Err(PeerError::Disconnected(why)) if why.starts_with("the run has not begun") => {
-                assert!(begun.elapsed() < PATIENCE, "{why}");
+                assert!(begun.elapsed() < TIME_LIMIT, "{why}");
                 thread::sleep(Duration::from_millis(200));
             }
             other => return other,

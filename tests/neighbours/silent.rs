@@ -18,7 +18,7 @@ use rustix::process::{Pid, Signal, kill_process};
 use sessions::network::{Peer, Received, Role};
 use whole_system_tests::Scratch;
 
-use super::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
+use super::bench::{Controller, Ended, TIME_LIMIT, Workstation, attend, bare};
 
 const LONG: usize = 50; // more than enough
 
@@ -40,7 +40,7 @@ fn terminate(mut controller: Controller) -> Ended {
     kill_process(Pid::from_child(&controller.child), Signal::TERM).expect("it runs");
     let asked = Instant::now();
     while controller.child.try_wait().expect("a child").is_none() {
-        assert!(asked.elapsed() < PATIENCE, "it does not end");
+        assert!(asked.elapsed() < TIME_LIMIT, "it does not end");
         thread::sleep(Duration::from_millis(10));
     }
     controller.end()
@@ -77,7 +77,7 @@ fn a_run_can_be_ended_while_a_tick_waits_for_a_neighbour() {
             let answers = if role == silent { LONG } else { usize::MAX };
             thread::spawn(move || fall_silent(peer, answers, &tell))
         });
-        heard.recv_timeout(PATIENCE).expect("a tick waits");
+        heard.recv_timeout(TIME_LIMIT).expect("a tick waits");
         let ended = terminate(controller);
         assert_eq!(ended.status, Some(0), "{silent}: {}", ended.said);
         assert!(!ended.page.contains("has disconnected"), "{silent}: {}", ended.page);
@@ -106,7 +106,7 @@ fn waiting_run_ends_on_request() {
         });
         workstation.send(&bare(1, "STARTUP"));
         let workstation = thread::spawn(move || follow(workstation));
-        heard.recv_timeout(PATIENCE).expect("it is asked, and waited for");
+        heard.recv_timeout(TIME_LIMIT).expect("it is asked, and waited for");
         let ended = terminate(controller);
         assert_eq!(ended.status, Some(0), "{clock}: {}", ended.said);
         assert!(!ended.said.contains("cannot be listed"), "{clock}: {}", ended.said);

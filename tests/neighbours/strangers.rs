@@ -9,7 +9,7 @@ use std::{
 use sessions::network::{Peer, Role};
 use whole_system_tests::{NOBODY, Scratch, may_become_nobody, rcs_neighbour, rcs_run, root};
 
-use super::bench::{Controller, PATIENCE};
+use super::bench::{Controller, TIME_LIMIT};
 
 /// Forms of earlier versions.
 #[test]
@@ -77,7 +77,7 @@ fn at_a_socket_only_the_same_user_is_admitted() {
     fs::set_permissions(socket, fs::Permissions::from_mode(0o666)).expect("its mode can be set");
     let told = as_nobody();
     assert!(told.contains("user 65534 was expected, found user 0"), "{told}");
-    let _own = Peer::connect_within(PATIENCE, &controller.address, Role::Workstation).expect("it waits");
+    let _own = Peer::connect_within(TIME_LIMIT, &controller.address, Role::Workstation).expect("it waits");
     let ended = controller.end();
     assert!(
         ended.page.contains("a connection was refused: user 0 was expected, found user 65534"),

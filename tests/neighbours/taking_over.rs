@@ -8,14 +8,14 @@ use neighbours::mailbox::HWSC_STATUS;
 use rcs_core::name::Name16;
 use sessions::operator::Client;
 
-use super::bench::{Controller, PATIENCE, Workstation, bare};
+use super::bench::{Controller, TIME_LIMIT, Workstation, bare};
 
 /// Repeats a request until it is accepted; the workstation controller reads meanwhile.
 fn ask_until(client: &mut Client, workstation: &mut Workstation, request: &str, meanwhile: &[&str]) {
     let begun = Instant::now();
     while let Err(why) = client.ask(request).expect("the run answers") {
         assert!(meanwhile.iter().any(|reason| why.contains(reason)), "{request}: {why}");
-        assert!(begun.elapsed() < PATIENCE, "{request}: {why}");
+        assert!(begun.elapsed() < TIME_LIMIT, "{request}: {why}");
         workstation.run_to(workstation.tick + 5);
     }
 }
@@ -45,7 +45,7 @@ fn commands_during_an_operator_session_are_not_executed_later() {
     ask_until(&mut client, &mut workstation, home, &[]);
     let begun = Instant::now();
     while refused(&mut client, "workstation").contains("the robot at HOME") {
-        assert!(begun.elapsed() < PATIENCE, "the robot does not come to HOME");
+        assert!(begun.elapsed() < TIME_LIMIT, "the robot does not come to HOME");
         workstation.run_to(workstation.tick + 5);
     }
     assert!(refused(&mut client, "workstation").contains("PAUSE as the last command"));

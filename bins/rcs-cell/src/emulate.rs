@@ -94,7 +94,7 @@ impl Emulation {
         let mut next = CYCLE_NS;
         while !stop.load(Ordering::Relaxed) {
             while let Ok(line) = lines.try_recv() {
-                if self.obey(line.trim()) {
+                if self.run_line(line.trim()) {
                     return Ok(());
                 }
             }
@@ -172,7 +172,7 @@ impl Emulation {
     }
 
     /// Executes a command line; returns true for `quit`.
-    fn obey(&mut self, line: &str) -> bool {
+    fn run_line(&mut self, line: &str) -> bool {
         match line {
             "" => {}
             "estop" => self.robot.emergency_stop(),

@@ -10,7 +10,7 @@ use interfaces::device::LinkBytes;
 const MOST_WAITING: usize = 1024;
 const BITS: u64 = 10; // bits per byte: start, eight data, stop
 const PAUSE_BYTES: u64 = 2; // a burst of bytes is over after a gap of this many byte times (ASSUMED)
-const PATIENCE_BYTES: u64 = 20; // longest delay of a step for a frame that is just arriving, byte times
+const LATE_BYTES: u64 = 20; // longest delay of a step for a frame that is just arriving, byte times
 
 /// Both directions of the line: arrival time in us, and byte.
 #[derive(Debug)]
@@ -109,7 +109,7 @@ impl Cadence {
         let Some(&(end, _)) = line.rx.back() else { return regular };
         let over = end + PAUSE_BYTES * line.byte_us;
         if over > regular {
-            return over.min(regular + PATIENCE_BYTES * line.byte_us);
+            return over.min(regular + LATE_BYTES * line.byte_us);
         }
         let complete =
             line.rx.len() >= FRAME_BYTES || line.rx.front().is_some_and(|(_, byte)| *byte != START);

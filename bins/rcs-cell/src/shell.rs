@@ -87,7 +87,7 @@ impl Shell {
         while !self.stop.load(Ordering::Relaxed) {
             self.host.poll(self.now())?;
             self.take_input()?;
-            if self.obey() {
+            if self.run_line() {
                 break;
             }
             if self.cadence.next(self.host.line()) <= self.now() {
@@ -126,7 +126,7 @@ impl Shell {
     }
 
     /// Executes the lines that are due; returns true after `quit`.
-    fn obey(&mut self) -> bool {
+    fn run_line(&mut self) -> bool {
         // A key takes effect in the next step, and the next key must see its effect.
         while self.wait_until <= self.now() && !self.pressed {
             let Some(text) = self.waiting.pop_front() else { break };

@@ -153,7 +153,7 @@ impl Station {
     /// Executes the lines that were typed. Returns true for `quit`.
     fn obey_all(&mut self, lines: &Receiver<String>) -> bool {
         while let Ok(line) = lines.try_recv() {
-            match self.obey(line.trim()) {
+            match self.run_line(line.trim()) {
                 Ok(true) => return true,
                 Ok(false) => {}
                 Err(reason) => stdout_line!("error: {reason}"),
@@ -162,7 +162,7 @@ impl Station {
         false
     }
 
-    fn obey(&mut self, line: &str) -> Result<bool, String> {
+    fn run_line(&mut self, line: &str) -> Result<bool, String> {
         let words: Vec<&str> = line.split_whitespace().collect();
         match words[..] {
             [] => {}

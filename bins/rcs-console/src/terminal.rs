@@ -47,7 +47,7 @@ use crate::rcs_console::{
 
 const LOOK_AT: Duration = Duration::from_millis(40); // time between two reads of a run: a tick
 const DRAW: Duration = Duration::from_millis(80); // time between two frames: every other tick (VI.6)
-const PATIENCE: Duration = Duration::from_secs(1); // time limit for an orderly end after a signal
+const END_LIMIT: Duration = Duration::from_secs(1); // time limit for an orderly end after a signal
 
 /// Show the source on the command line until the user quits.
 pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
@@ -119,7 +119,7 @@ fn end_by_signal(stop: Arc<AtomicBool>) -> io::Result<()> {
     let wait = move || {
         if signals.forever().next().is_some() {
             stop.store(true, Ordering::Relaxed);
-            thread::sleep(PATIENCE);
+            thread::sleep(END_LIMIT);
             let _ = terminal::disable_raw_mode();
             process::exit(1);
         }

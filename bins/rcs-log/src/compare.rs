@@ -104,12 +104,12 @@ fn run(data: &Path, job: &str, seed: u64) -> Result<Trace, StartError> {
     let mut run = Run::new(config, Box::new(()))?;
     let (mut trace, mut before) = (Trace::default(), CommonMemory::default());
     loop {
-        let goes_on = run.step();
+        let has_next = run.step();
         let after = *run.memory();
         let (tick, external) = (run.last_tick(), *run.external_inputs());
         trace.note(&Moment { tick, gap: 0, external, before, after, timing: None, world: None });
         before = after;
-        if !goes_on {
+        if !has_next {
             break;
         }
     }

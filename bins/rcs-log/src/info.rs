@@ -22,7 +22,7 @@ use serde::Serialize;
 
 use crate::{
     Answer, Error, print,
-    story::{Chronicle, CommandStory, open, walk},
+    story::{CommandHistory, CommandStory, open, walk},
 };
 
 /// Arguments of `info`.
@@ -123,11 +123,11 @@ pub fn info(arguments: &Arguments) -> Result<ExitCode, Error> {
 /// # Errors
 /// [`Error::Read`] if the log cannot be read, [`Error::Empty`] without a tick.
 pub fn summary(log: &Log, path: &Path) -> Result<Info, Error> {
-    let (mut chronicle, mut link) = (Chronicle::new(tables::of_log(log).0), Link::default());
+    let (mut command_history, mut link) = (CommandHistory::new(tables::of_log(log).0), Link::default());
     let (mut ticks, mut missing, mut last) = (0, 0, Tick::BEFORE_START);
     let (mut times, mut overruns) = (Vec::new(), 0);
     walk(log, path, |moment| {
-        chronicle.note(moment);
+        command_history.note(moment);
         link = Link::from(&moment.after.t3i.status.counters);
         missing += moment.gap;
         if let Some(timing) = moment.timing {
@@ -143,7 +143,7 @@ pub fn summary(log: &Log, path: &Path) -> Result<Info, Error> {
     }
     let level = |level| log.lines().filter(|line| line.level == level).count();
     let end = |key: &str| log.end.as_ref().and_then(|end| end.get(key)).cloned();
-    let failure = chronicle.failed(log);
+    let failure = command_history.failed(log);
     Ok(Info {
         file: path.display().to_string(),
         bytes: log.size(),
@@ -156,7 +156,7 @@ pub fn summary(log: &Log, path: &Path) -> Result<Info, Error> {
         damage: log.damage(),
         result: end("result"),
         digest: end("digest"),
-        commands: chronicle.commands,
+        commands: command_history.commands,
         link,
         facts: facts(log),
         job: job(log),

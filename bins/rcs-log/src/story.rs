@@ -109,7 +109,7 @@ impl CommandStory {
 }
 
 /// The commands of a run, and its failure.
-pub struct Chronicle {
+pub struct CommandHistory {
     /// Commands in order.
     pub commands: Vec<CommandStory>,
     /// The reason why the last failed command failed.
@@ -122,13 +122,13 @@ pub struct Chronicle {
 }
 
 /// For the commands alone: its failure has the tables of this program.
-impl Default for Chronicle {
+impl Default for CommandHistory {
     fn default() -> Self {
         Self::new(Ladder::processes())
     }
 }
 
-impl Chronicle {
+impl CommandHistory {
     /// An empty chronicle. `processes` are those of the log.
     pub fn new(processes: Processes) -> Self {
         Self {

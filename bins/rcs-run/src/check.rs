@@ -18,8 +18,8 @@ use std::{
 
 use crate::pages::DataArgument;
 use diagnostics::{
-    Blame, Diagnostic, Diagnostics, FAULTS, FIELDS, Finding, Group, JOBS, Problems, ROBOTS, Severity, Source,
-    grouped,
+    Diagnostic, Diagnostics, FAULTS, FIELDS, Finding, Group, JOBS, Problems, ROBOTS, Severity, Source,
+    Suspects, grouped,
 };
 use executive::egm::{RobotFile, placement::PlacementError};
 use os_io::{
@@ -216,15 +216,15 @@ impl Checked {
 
     /// The findings by the datum that is probably wrong, the worst datum first.
     fn by_datum(&self) -> Vec<OfDatum> {
-        let blames: Vec<Blame> = self.findings().into_iter().map(Diagnostic::blame).collect();
+        let suspects: Vec<Suspects> = self.findings().into_iter().map(Diagnostic::suspects).collect();
         let of_datum = |Group { datum, findings, errors }| OfDatum {
             datum,
             findings: findings.len(),
-            of: blames.len(),
+            of: suspects.len(),
             errors,
             positions: findings,
         };
-        grouped(&blames).into_iter().map(of_datum).collect()
+        grouped(&suspects).into_iter().map(of_datum).collect()
     }
 
     /// The findings of each datum, the worst first, and a summary of each report. Without `all`, one finding per datum.

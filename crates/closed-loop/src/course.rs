@@ -86,7 +86,7 @@ impl<L> Course<L> {
     }
 
     /// Run the next tick on its external inputs, and call `observe` after each stage. The caller must then call
-    /// [`sum_up`](Self::sum_up).
+    /// [`summarise`](Self::sum_up).
     ///
     /// # Errors
     /// Errors of the levels. The tick is then void, and common memory is that of the previous tick.
@@ -115,12 +115,12 @@ impl<L> Course<L> {
         L: Levels<Data>,
     {
         self.step(external, data, &mut |_| {})?;
-        self.sum_up(external);
+        self.summarise(external);
         Ok(())
     }
 
     /// Add the buffers of the last tick to the digest, and check its statuses.
-    pub fn sum_up(&mut self, external: &ExternalInputs) {
+    pub fn summarise(&mut self, external: &ExternalInputs) {
         let (before, after) = of_tick(&mut self.halves, self.tick);
         self.watch.observe(self.tick, external, before, after);
         self.digest.add_record(after, &mut self.scratch);

@@ -11,7 +11,7 @@ pub struct Given {
     /// Inputs from an external robot; `None` for the simulated one.
     pub robot: Option<RobotInputs>,
     /// Answer timeout of the host, ticks; `None` for the manual's.
-    pub patience: Option<u16>,
+    pub silence_limit: Option<u16>,
     /// Expected lag of the robot behind the sent positions, ms; `None` for that of the T3.
     pub lag: Option<u16>,
     pub joystick: JoystickBox, // combined with that of the cell
@@ -25,7 +25,7 @@ impl Default for Given {
     fn default() -> Self {
         Self {
             robot: None,
-            patience: None,
+            silence_limit: None,
             lag: None,
             joystick: JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() },
             terminals: OperatorInputs::default(),

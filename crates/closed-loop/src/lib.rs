@@ -132,7 +132,7 @@ impl<L, W: World> ClosedLoop<L, W> {
                 (robot.rx, robot.ready, robot.unsent);
             devices.resolvers = robot.resolvers.unwrap_or(devices.resolvers);
         }
-        (devices.link_patience, devices.robot_lag) = (given.patience, given.lag);
+        (devices.link_patience, devices.robot_lag) = (given.silence_limit, given.lag);
         devices.joystick = combined(&given.joystick, devices.joystick);
         ExternalInputs {
             hws: *self.gate.command(),

@@ -17,7 +17,7 @@ pub struct RobotLine {
 
 impl RobotLine {
     /// Start a fault plan now. Returns false, without a change, if the line already has a plan.
-    pub fn suffer(&mut self, plan: &Plan) -> bool {
+    pub fn apply_faults(&mut self, plan: &Plan) -> bool {
         let free = self.plan.is_none();
         if free {
             self.replace_plan(plan);

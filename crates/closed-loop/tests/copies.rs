@@ -66,7 +66,7 @@ fn faults_on_the_line_of_a_copy_do_not_reach_the_original() {
     cut.closed.line_mut().cut(now);
     let mut plan = Plan::new(1);
     plan.add(Rule::new(FaultKind::Drop).window(401, 402)).expect("one rule fits");
-    assert!(!cut.closed.line_mut().suffer(&plan), "it has a plan already");
+    assert!(!cut.closed.line_mut().apply_faults(&plan), "it has a plan already");
     for run in [&mut original, &mut undisturbed, &mut cut] {
         run.run_to(500);
     }

@@ -187,17 +187,17 @@ proptest! {
 }
 
 #[derive(Clone, Debug)]
-enum Mishap {
+enum DeliveryFault {
     /// A process is not stepped for some ticks.
     Late(ProcessId, u8),
     Restart(ProcessId),
 }
 
-fn mishap() -> impl Strategy<Value = Mishap> {
+fn mishap() -> impl Strategy<Value = DeliveryFault> {
     let process = || prop::sample::select(ProcessId::ALL.to_vec());
     prop_oneof![
-        (process(), 1_u8..12).prop_map(|(p, n)| Mishap::Late(p, n)),
-        process().prop_map(Mishap::Restart)
+        (process(), 1_u8..12).prop_map(|(p, n)| DeliveryFault::Late(p, n)),
+        process().prop_map(DeliveryFault::Restart)
     ]
 }
 
@@ -218,8 +218,8 @@ proptest! {
         for k in 0..520_u16 {
             for (_, mishap) in mishaps.iter().filter(|(at, _)| *at == k) {
                 match mishap {
-                    Mishap::Late(process, ticks) => late.push((*process, *ticks)),
-                    Mishap::Restart(process) => rig.ladder.restart(*process),
+                    DeliveryFault::Late(process, ticks) => late.push((*process, *ticks)),
+                    DeliveryFault::Restart(process) => rig.ladder.restart(*process),
                 }
             }
             let stepped: Vec<ProcessId> =

@@ -7,7 +7,7 @@
 //!
 //! A controller with DTR on and without answers may be in Hold, show a warning D1 to D6, have a dead receiver, or the
 //! wire may be cut: the host cannot distinguish these. It sends a restart once per second, and reports the link as
-//! failed after the time of [`Host::set_patience`].
+//! failed after the time of [`Host::set_silence_limit`].
 //!
 //! A report has no number either. If more than one was requested, only the last is valid, and only after an answer
 //! time without another one: on a slow line the robot may have moved since the first.
@@ -31,7 +31,7 @@ pub const MOST_RETRIES: u8 = 3;
 /// Ticks between two unanswered restarts: 1 s (docs/design/link.md "Silence").
 pub const RESTART_TICKS: u16 = 25;
 /// Default number of ticks with DTR on and without a report after which the link is treated as failed: 60 s.
-pub const PATIENCE_TICKS: u16 = 60 * RESTART_TICKS;
+pub const SILENCE_LIMIT_TICKS: u16 = 60 * RESTART_TICKS;
 /// Number of attempts without DTR, each lasting an answer time, after which the link is treated as not responding.
 pub const START_ATTEMPTS: u8 = 3;
 
@@ -105,10 +105,10 @@ pub struct Host {
     waited: u16,
     answer_ticks: u16,
     /// Time limit of a start or a cancel with DTR on, ticks.
-    patience: u16,
+    silence_limit: u16,
     /// Ticks with DTR on in the present start or cancel.
     starting: u16,
-    /// True after [`RESTART_TICKS`] with DTR on and without a report. Only a report resets it, not [`Host::forgive`].
+    /// True after [`RESTART_TICKS`] with DTR on and without a report. Only a report resets it, not [`Host::clear_fault`].
     silent: bool,
     /// A restart was sent, and its report has not arrived yet.
     restarted: bool,
@@ -134,7 +134,7 @@ impl Host {
     /// A host with an answer time of `answer_ticks` ticks (at least 1); usually [`ANSWER_TICKS`].
     #[must_use]
     pub fn new(answer_ticks: u16) -> Self {
-        Self { answer_ticks: answer_ticks.max(1), patience: PATIENCE_TICKS, ..Self::default() }
+        Self { answer_ticks: answer_ticks.max(1), silence_limit: SILENCE_LIMIT_TICKS, ..Self::default() }
     }
 
     /// Resets the counters and discards an outdated candidate report; the behaviour does not change.
@@ -146,8 +146,8 @@ impl Host {
     }
 
     /// Time limit, in ticks with DTR on, for a report or the answer to a cancel. Then the link has failed.
-    pub const fn set_patience(&mut self, ticks: u16) {
-        self.patience = ticks;
+    pub const fn set_silence_limit(&mut self, ticks: u16) {
+        self.silence_limit = ticks;
     }
 
     /// True if the controller's DTR was on in this tick.
@@ -186,14 +186,14 @@ impl Host {
         matches!(self.state, HostState::Ready)
     }
 
-    /// `status-arg-out` (VI.1.2): the first fault since [`Host::forgive`].
+    /// `status-arg-out` (VI.1.2): the first fault since [`Host::clear_fault`].
     #[must_use]
     pub const fn fault(&self) -> LinkFault {
         self.fault
     }
 
     /// Clear the fault.
-    pub const fn forgive(&mut self) {
+    pub const fn clear_fault(&mut self) {
         self.fault = LinkFault::None;
         (self.attempts, self.starting, self.attempt) = (0, 0, LinkFault::None);
     }
@@ -261,7 +261,7 @@ impl Host {
                 None => {}
             }
         }
-        self.be_patient();
+        self.count_silence();
         if self.waited >= self.answer_ticks { event.max(self.without_answer()) } else { event }
     }
 

@@ -50,7 +50,7 @@ proptest! {
     #[test]
     fn no_sequence_of_goals_brings_a_velocity_warning(
         goals in goals(),
-        patience in 1_usize..120,
+        silence_limit in 1_usize..120,
         period in (1_u16..=5).prop_map(|n| n * 10),
     ) {
         let limits = Limits::new(period).unwrap();
@@ -62,7 +62,7 @@ proptest! {
         let mut position = Position::reported(reported, &T3);
         for goal in &goals {
             // The goal may change before it is reached.
-            for _ in 0..patience {
+            for _ in 0..silence_limit {
                 let next = step(&position, goal, &T3, &limits).unwrap();
                 position = next.position;
                 let mut frame = [0; 16];

@@ -17,7 +17,7 @@ pub struct Group {
 
 /// The data that a finding names, one of which is probably wrong, and whether it is an error.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Blame {
+pub struct Suspects {
     /// Names of the data; not empty.
     pub data: Vec<String>,
     /// True for an error, false for a warning.
@@ -26,27 +26,28 @@ pub struct Blame {
 
 /// Groups findings: the datum that most findings name gets them all, then the next one. The worst group is the first.
 #[must_use]
-pub fn grouped(blames: &[Blame]) -> Vec<Group> {
-    let mut left: Vec<usize> = (0..blames.len()).collect();
+pub fn grouped(suspects: &[Suspects]) -> Vec<Group> {
+    let mut left: Vec<usize> = (0..suspects.len()).collect();
     let mut groups = Vec::new();
     while !left.is_empty() {
         // The first appearance decides between equals.
         let mut counts: BTreeMap<&str, (usize, usize, usize)> = BTreeMap::new();
         let mut order = 0;
-        for blame in left.iter().filter_map(|&at| blames.get(at)) {
-            for datum in &blame.data {
+        for suspects in left.iter().filter_map(|&at| suspects.get(at)) {
+            for datum in &suspects.data {
                 let count = counts.entry(datum).or_insert((0, 0, order));
-                (count.0, count.1) = (count.0 + usize::from(blame.error), count.1 + 1);
+                (count.0, count.1) = (count.0 + usize::from(suspects.error), count.1 + 1);
                 order += 1;
             }
         }
         let worst =
             counts.into_iter().max_by_key(|(_, (errors, all, order))| (*errors, *all, usize::MAX - order));
         let Some((datum, (errors, ..))) = worst else { break };
-        let is_of =
-            |at: &usize| blames.get(*at).is_some_and(|blame| blame.data.iter().any(|name| name == datum));
+        let is_of = |at: &usize| {
+            suspects.get(*at).is_some_and(|suspects| suspects.data.iter().any(|name| name == datum))
+        };
         let (mut findings, others): (Vec<_>, Vec<_>) = left.into_iter().partition(is_of);
-        findings.sort_by_key(|&at| blames.get(at).is_none_or(|blame| !blame.error));
+        findings.sort_by_key(|&at| suspects.get(at).is_none_or(|suspects| !suspects.error));
         groups.push(Group { datum: datum.to_owned(), findings, errors });
         left = others;
     }
@@ -56,9 +57,9 @@ pub fn grouped(blames: &[Blame]) -> Vec<Group> {
 impl Diagnostic {
     /// The data that the finding is about, one of which is probably wrong; never empty.
     #[must_use]
-    pub fn blame(&self) -> Blame {
+    pub fn suspects(&self) -> Suspects {
         let data = if self.problem.data.is_empty() { vec![self.named()] } else { self.problem.data.clone() };
-        Blame { data, error: self.severity() == Severity::Error }
+        Suspects { data, error: self.severity() == Severity::Error }
     }
 
     /// The entry of a TOML file, the name in the underlined text or after it, or else the place.
@@ -83,21 +84,21 @@ impl Diagnostic {
 mod tests {
     use super::*;
 
-    fn blame(data: &[&str], error: bool) -> Blame {
-        Blame { data: data.iter().map(|name| (*name).to_owned()).collect(), error }
+    fn suspects(data: &[&str], error: bool) -> Suspects {
+        Suspects { data: data.iter().map(|name| (*name).to_owned()).collect(), error }
     }
 
     #[test]
     fn datum_with_the_most_findings_is_listed_first_with_all_of_them() {
-        let blames = [
-            blame(&["A/D-5", "UNIT-V1"], true),
-            blame(&["HOME"], false),
-            blame(&["UNIT-V1", "SAFE"], true),
-            blame(&["SAFE", "UNIT-V1"], true),
-            blame(&["SAFE"], true),
-            blame(&["HOME"], false),
+        let suspects = [
+            suspects(&["A/D-5", "UNIT-V1"], true),
+            suspects(&["HOME"], false),
+            suspects(&["UNIT-V1", "SAFE"], true),
+            suspects(&["SAFE", "UNIT-V1"], true),
+            suspects(&["SAFE"], true),
+            suspects(&["HOME"], false),
         ];
-        let groups = grouped(&blames);
+        let groups = grouped(&suspects);
         let of = |group: &Group| (group.datum.clone(), group.findings.clone(), group.errors);
         assert_eq!(
             groups.iter().map(of).collect::<Vec<_>>(),
@@ -111,7 +112,7 @@ mod tests {
 
     #[test]
     fn errors_of_a_datum_precede_its_warnings() {
-        let groups = grouped(&[blame(&["A"], false), blame(&["A"], true)]);
+        let groups = grouped(&[suspects(&["A"], false), suspects(&["A"], true)]);
         assert_eq!((groups[0].findings.clone(), groups[0].errors), (vec![1, 0], 1));
     }
 }

@@ -51,5 +51,5 @@ pub use self::{
     host::{Host, Sample},
     limits::Limits,
     pose::{Pose, Twist},
-    session::{Hindrance, LinkState},
+    session::{LinkState, NotFollowing},
 };

@@ -22,7 +22,7 @@ pub enum LinkState {
     #[default]
     Waiting,
     /// Messages arrive, but the robot does not follow.
-    Standby(Hindrance),
+    Standby(NotFollowing),
     /// The robot follows its targets.
     Running,
     /// No message has arrived for too long.
@@ -31,7 +31,7 @@ pub enum LinkState {
 
 /// Why the robot does not follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Hindrance {
+pub enum NotFollowing {
     /// The motion correction has stopped with an error: a singularity, a joint limit, a time-out.
     MciError,
     /// The motors are off: an emergency stop, or a stop of the enabling device.
@@ -44,7 +44,7 @@ pub enum Hindrance {
     Unknown,
 }
 
-impl Hindrance {
+impl NotFollowing {
     /// As text for messages.
     #[must_use]
     pub const fn text(self) -> &'static str {
@@ -96,7 +96,7 @@ impl Session {
             return Arrival::Old;
         }
         (self.last, self.heard) = (Some(seqno), now);
-        self.state = hindrance(message).map_or(LinkState::Running, LinkState::Standby);
+        self.state = not_following(message).map_or(LinkState::Running, LinkState::Standby);
         Arrival::New
     }
 
@@ -110,15 +110,15 @@ impl Session {
 }
 
 /// The most serious reason first.
-fn hindrance(message: &Robot) -> Option<Hindrance> {
+fn not_following(message: &Robot) -> Option<NotFollowing> {
     let (motors, mci, rapid) = (message.motor_state, message.mci_state, message.rapid_state);
     match (motors, mci, rapid) {
-        (_, Some(MciState::Error), _) => Some(Hindrance::MciError),
-        (Some(MotorState::Off), ..) => Some(Hindrance::MotorsOff),
-        (_, _, Some(RapidState::Stopped)) => Some(Hindrance::RapidStopped),
-        (_, Some(MciState::Stopped), _) => Some(Hindrance::MciStopped),
+        (_, Some(MciState::Error), _) => Some(NotFollowing::MciError),
+        (Some(MotorState::Off), ..) => Some(NotFollowing::MotorsOff),
+        (_, _, Some(RapidState::Stopped)) => Some(NotFollowing::RapidStopped),
+        (_, Some(MciState::Stopped), _) => Some(NotFollowing::MciStopped),
         (Some(MotorState::On), Some(MciState::Running), Some(RapidState::Running)) => None,
-        _ => Some(Hindrance::Unknown),
+        _ => Some(NotFollowing::Unknown),
     }
 }
 
@@ -141,21 +141,21 @@ mod tests {
             (well(), LinkState::Running),
             (
                 message(MotorState::Off, MciState::Error, RapidState::Stopped),
-                LinkState::Standby(Hindrance::MciError),
+                LinkState::Standby(NotFollowing::MciError),
             ),
             (
                 message(MotorState::Off, MciState::Stopped, RapidState::Stopped),
-                LinkState::Standby(Hindrance::MotorsOff),
+                LinkState::Standby(NotFollowing::MotorsOff),
             ),
             (
                 message(MotorState::On, MciState::Running, RapidState::Stopped),
-                LinkState::Standby(Hindrance::RapidStopped),
+                LinkState::Standby(NotFollowing::RapidStopped),
             ),
             (
                 message(MotorState::On, MciState::Stopped, RapidState::Running),
-                LinkState::Standby(Hindrance::MciStopped),
+                LinkState::Standby(NotFollowing::MciStopped),
             ),
-            (Robot::default(), LinkState::Standby(Hindrance::Unknown)),
+            (Robot::default(), LinkState::Standby(NotFollowing::Unknown)),
         ] {
             let mut session = Session::default();
             session.accept(0, 1, &message);

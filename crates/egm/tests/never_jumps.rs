@@ -1,7 +1,7 @@
 //! Each target is within the limits from the previous one, or it is the robot's own position.
 
 use egm::{
-    Hindrance, Host, Limits, LinkState, Pose, Twist,
+    Host, Limits, LinkState, NotFollowing, Pose, Twist,
     host::Settings,
     message::{
         Header, MOST_BYTES, MciState, MessageType, Motion, MotorState, RapidState, Robot, Sensor, WirePose,
@@ -27,7 +27,7 @@ enum Event {
     States(u8),
     /// A path begins at the sample's start pose, or at another.
     Begin {
-        astray: bool,
+        misplaced: bool,
     },
     Point([f64; 3], [f64; 3]), // relative to the previous one, mm and rad
     Stop,
@@ -42,7 +42,7 @@ fn event() -> impl Strategy<Value = Event> {
         1 => Just(Event::Double),
         1 => way(40.0).prop_map(Event::Pushed),
         1 => (0..6_u8).prop_map(Event::States),
-        3 => any::<bool>().prop_map(|astray| Event::Begin { astray }),
+        3 => any::<bool>().prop_map(|misplaced| Event::Begin { misplaced }),
         12 => (way(9.0), way(0.03)).prop_map(|(way, turn)| Event::Point(way, turn)),
         1 => (way(100.0), way(1.0)).prop_map(|(way, turn)| Event::Point(way, turn)),
         1 => Just(Event::Stop),
@@ -151,16 +151,16 @@ impl Bench {
             Event::Double => self.receive(),
             Event::Pushed(way) => self.at = self.at.moved(&Twist { linear: *way, angular: [0.0; 3] }),
             Event::States(states) => self.states = *states,
-            Event::Begin { astray } => {
+            Event::Begin { misplaced } => {
                 let start = self.host.sample().start;
                 let from = start.unwrap_or(self.at);
-                let from = if *astray {
+                let from = if *misplaced {
                     from.moved(&Twist { linear: [50.0; 3], ..Default::default() })
                 } else {
                     from
                 };
                 let begun = self.host.begin(self.now, &from);
-                assert_eq!(begun.is_ok(), start.is_some() && !astray);
+                assert_eq!(begun.is_ok(), start.is_some() && !misplaced);
                 self.point = from;
             }
             Event::Point(way, turn) => {
@@ -204,7 +204,7 @@ proptest! {
 fn a_robot_that_follows_is_moved() {
     let mut bench = Bench::new(1);
     bench.message();
-    bench.happen(&Event::Begin { astray: false });
+    bench.happen(&Event::Begin { misplaced: false });
     for _ in 0..50 {
         bench.happen(&Event::Point([8.0, 0.0, 0.0], [0.0, 0.0, 0.02]));
     }
@@ -216,7 +216,7 @@ fn a_robot_that_follows_is_moved() {
 fn an_interrupted_run_does_not_resume_by_itself() {
     let mut bench = Bench::new(1);
     bench.message();
-    bench.happen(&Event::Begin { astray: false });
+    bench.happen(&Event::Begin { misplaced: false });
     for _ in 0..10 {
         bench.happen(&Event::Point([8.0, 0.0, 0.0], [0.0; 3]));
     }
@@ -236,14 +236,14 @@ fn an_interrupted_run_does_not_resume_by_itself() {
 fn path_begins_where_the_robot_was_moved_while_stopped() {
     let mut bench = Bench::new(1);
     bench.message();
-    bench.happen(&Event::Begin { astray: false });
+    bench.happen(&Event::Begin { misplaced: false });
     for _ in 0..10 {
         bench.happen(&Event::Point([8.0, 0.0, 0.0], [0.0; 3]));
     }
     bench.states = 3;
     bench.message();
     let sample = bench.host.sample();
-    assert_eq!(sample.link, LinkState::Standby(Hindrance::MotorsOff));
+    assert_eq!(sample.link, LinkState::Standby(NotFollowing::MotorsOff));
     assert_eq!((sample.start, sample.is_moving), (None, false));
     bench.happen(&Event::Pushed([0.0, 0.0, -30.0]));
     bench.states = 0;
@@ -255,7 +255,7 @@ fn path_begins_where_the_robot_was_moved_while_stopped() {
 fn after_a_gap(moved: f64) -> u64 {
     let mut bench = Bench::new(1);
     bench.message();
-    bench.happen(&Event::Begin { astray: false });
+    bench.happen(&Event::Begin { misplaced: false });
     for _ in 0..10 {
         bench.happen(&Event::Point([14.0, 0.0, 0.0], [0.0; 3]));
     }

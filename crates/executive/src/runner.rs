@@ -74,7 +74,7 @@ impl<L> Runner<L> {
         }
         self.last_ns = controller_ns + self.stage_times.mark(Stage::Buffers);
         self.times.add(self.last_ns);
-        course.sum_up(external);
+        course.summarise(external);
         if let Some(publisher) = &self.publisher {
             publisher.show(external, course.memory());
             if self.shadow.is_some() {

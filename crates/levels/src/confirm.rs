@@ -86,7 +86,7 @@ pub struct Claim {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
-pub enum Doubt {
+pub enum Confirming {
     /// Wait for a newer reading.
     Wait,
     /// Report an error.
@@ -96,7 +96,7 @@ pub enum Doubt {
 decision_table! {
     /// CONFIRM: a command is done only if the sensors confirm its goal in this tick. If the readings are older than
     /// the end of the command, the command waits for newer ones; then it fails.
-    pub CONFIRM: fn confirm(Claim) -> Doubt or () {
+    pub CONFIRM: fn confirm(Claim) -> Confirming or () {
         1:  evidence: Holds | Unsensed     => consult;
         2:  reading: Awaited               => Wait;
         3:  evidence: Elsewhere | Moving   => Fail(NotAtGoal);
@@ -213,8 +213,8 @@ impl Execution {
             Verdict::Decided(decision) => {
                 self.claimed = self.claimed.saturating_add(1);
                 let (action, next) = match decision.action {
-                    Doubt::Wait => (Action::WAIT, step),
-                    Doubt::Fail(reason) => (Action::fail(reason), choice.next),
+                    Confirming::Wait => (Action::WAIT, step),
+                    Confirming::Fail(reason) => (Action::fail(reason), choice.next),
                 };
                 Choice { table: number, row: decision.row, action, next, values: decision.values }
             }

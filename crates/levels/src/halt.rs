@@ -174,7 +174,7 @@ pub struct Fired {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
-pub enum Futile {
+pub enum Effecting {
     /// Report an error.
     Fail(Reason),
 }
@@ -182,7 +182,7 @@ pub enum Futile {
 decision_table! {
     /// EFFECT: the same row does not repeat an order that has changed no state variable of its table and has not
     /// advanced the command. The command fails.
-    pub EFFECT: fn effect(Fired) -> Futile or () {
+    pub EFFECT: fn effect(Fired) -> Effecting or () {
         1: order: None | New               => consult;
         2: order: Repeated, advance: Made  => consult;
         3: order: Repeated, advance: None  => Fail(NoEffect);
@@ -258,7 +258,7 @@ impl Execution {
                 self.last_order = if order == Order::New { Some(this) } else { self.last_order };
                 choice
             }
-            Verdict::Decided(Decision { row, action: Futile::Fail(reason), values, .. }) => {
+            Verdict::Decided(Decision { row, action: Effecting::Fail(reason), values, .. }) => {
                 Choice { table: number, row, action: Action::fail(reason), next: choice.next, values }
             }
         }

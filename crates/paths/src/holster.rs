@@ -20,7 +20,7 @@ pub const TAKE: [&str; 5] = ["QCA-FAST", "QCA-SLOW", "QCA-BACK", "QCA-LIFT", "QC
 const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"]; // `endeff-id#` 1 to 3
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Lacking {
+pub struct MissingRecord {
     pub gripper: Name16,
     what: What,
 }
@@ -34,7 +34,7 @@ enum What {
     Move(&'static str, Name10),
 }
 
-impl fmt::Display for Lacking {
+impl fmt::Display for MissingRecord {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { gripper, what } = self;
         write!(f, "GET-ENDEFF needs the holster of {gripper}: ")?;
@@ -48,7 +48,7 @@ impl fmt::Display for Lacking {
     }
 }
 
-impl Lacking {
+impl MissingRecord {
     #[must_use]
     pub fn help(&self) -> String {
         let Self { gripper, what } = self;
@@ -104,17 +104,17 @@ pub fn wanted(command: &HwsCommand, attached: Option<u8>, data: &TaskData<'_>) -
 
 /// The first missing record for a change of gripper. Does not allocate if there is none.
 #[must_use]
-pub fn lacking(attached: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Option<Lacking> {
+pub fn lacking(attached: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Option<MissingRecord> {
     let put =
         attached.and_then(|own| holster(own, WORN, data).and_then(|at| moves(own, &at, &PUT, data)).err());
     let take = || holster(wanted, TAKEN, data).and_then(|at| moves(wanted, &at, &TAKE, data)).err();
     put.or_else(take)
 }
 
-fn moves(id: u8, at: &Location, names: &[&'static str], data: &TaskData<'_>) -> Result<(), Lacking> {
+fn moves(id: u8, at: &Location, names: &[&'static str], data: &TaskData<'_>) -> Result<(), MissingRecord> {
     let known = |name: &str| data.relative_move(&Name16::clipped(name), &at.place).is_some();
     match names.iter().find(|name| !known(name)) {
-        Some(name) => Err(Lacking { gripper: object_of(id), what: What::Move(name, at.name) }),
+        Some(name) => Err(MissingRecord { gripper: object_of(id), what: What::Move(name, at.name) }),
         None => Ok(()),
     }
 }
@@ -126,9 +126,9 @@ pub fn object_of(id: u8) -> Name16 {
 }
 
 /// The location point that is assigned to the gripper's object (VII.7.3).
-pub fn holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<Location, Lacking> {
+pub fn holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<Location, MissingRecord> {
     let gripper = object_of(id);
-    let lacks = |what| Lacking { gripper, what };
+    let lacks = |what| MissingRecord { gripper, what };
     for needed in [WORN, grip] {
         data.object(&gripper, needed).ok_or_else(|| lacks(What::Grip(needed)))?;
     }

@@ -7,7 +7,7 @@ use interfaces::{HwsCommand, emove::EmoveVerb};
 use rcs_core::name::Name16;
 use taskdata::files::{Location, LookupError, RefType, TaskData};
 
-use crate::holster::{Lacking, PUT, TAKE, TAKEN, WORN, holster, object_of};
+use crate::holster::{MissingRecord, PUT, TAKE, TAKEN, WORN, holster, object_of};
 
 const PEDESTAL: &str = "PEDESTAL"; // holds an object (V.3.1 FIX-GRIP)
 const PEDESTAL_SAFE: &str = "PED-SAFE"; // the robot waits here while the pedestal turns
@@ -229,9 +229,9 @@ impl Maker<'_> {
 }
 
 /// The steps of GET-ENDEFF (V.3.1): leave the attached gripper in its holster, and take the wanted one from its own.
-/// Grippers are given by end effector id; `own` is `None` for a bare robot. Errors: [`Lacking`] if the task data do
+/// Grippers are given by end effector id; `own` is `None` for a bare robot. Errors: [`MissingRecord`] if the task data do
 /// not have a holster.
-pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<Step>, Lacking> {
+pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<Step>, MissingRecord> {
     let mut steps = Vec::new();
     if let Some(own) = own {
         let (go, location) = to_holster(own, WORN, data)?;
@@ -244,7 +244,7 @@ pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<
     Ok(steps)
 }
 
-fn to_holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<(Step, Location), Lacking> {
+fn to_holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<(Step, Location), MissingRecord> {
     let location = holster(id, grip, data)?;
     let object = Some(object_of(id));
     Ok((Step::Go { verb: EmoveVerb::MovToHol, object, grip, location }, location))

@@ -12,7 +12,7 @@ use crate::{
     cell::{RingState, WorkstationError},
     description::{CellDescription, Mounted, QuickChange},
     hand::{Hand, ROBOT_HANDS},
-    holster::{Holster, Perch, ears, holsters},
+    holster::{Holster, HolsterSeat, ears, holsters},
     quick_change::{Gap, Ring},
     sensor::Switch,
 };
@@ -21,7 +21,7 @@ use crate::{
 pub(crate) enum GripperPlace {
     Robot,
     /// It is on a holster (0 right, 1 left, 2 centre).
-    Holster(usize, Perch),
+    Holster(usize, HolsterSeat),
     Fallen,
     Away,
 }
@@ -130,7 +130,7 @@ impl Changer {
             if holster.tears(&offset) {
                 self.under_lips = None;
                 let forward = holster.slide(offset.forward);
-                return Some(GripperPlace::Holster(which, Perch { forward, ..holster.seated() }));
+                return Some(GripperPlace::Holster(which, HolsterSeat { forward, ..holster.seated() }));
             }
         }
         self.under_lips = self
@@ -141,7 +141,13 @@ impl Changer {
     }
 
     /// A time step of a gripper on its holster: it falls, slides with an engaged A plate, and is locked by the ring.
-    fn step_on_holster(&mut self, hand: Hand, which: usize, mut perch: Perch, step: &Step) -> GripperPlace {
+    fn step_on_holster(
+        &mut self,
+        hand: Hand,
+        which: usize,
+        mut perch: HolsterSeat,
+        step: &Step,
+    ) -> GripperPlace {
         let holster = &self.holsters[which];
         perch.fall(step.dt);
         let here = holster.gripper(&perch);

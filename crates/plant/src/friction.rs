@@ -18,14 +18,14 @@ pub struct Motion {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rubbed {
+pub struct TouchedBody {
     pub mass: Real,    // kg
     pub inertia: Real, // moment of inertia about the normal, kg·m²
     pub reach: Real,   // distance from the middle of the body to that of the touched area, m
     pub arm: Real,     // lever arm of friction on the touched area, m
 }
 
-impl Rubbed {
+impl TouchedBody {
     /// The motion after a step with an impulse of up to `limit` (N·s); `None` if friction stops the body.
     #[must_use]
     pub fn after(&self, motion: &Motion, limit: Real) -> Option<Motion> {
@@ -74,7 +74,7 @@ impl Rubbed {
 mod tests {
     use super::*;
 
-    const BAR: Rubbed = Rubbed { mass: 0.2, inertia: 1.8e-4, reach: 0.0425, arm: 0.005 };
+    const BAR: TouchedBody = TouchedBody { mass: 0.2, inertia: 1.8e-4, reach: 0.0425, arm: 0.005 };
 
     #[test]
     fn body_within_friction_stays() {
@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn friction_without_a_lever_is_coulomb_friction() {
-        let block = Rubbed { mass: 2.0, inertia: 1.0, reach: 0.0, arm: 0.1 };
+        let block = TouchedBody { mass: 2.0, inertia: 1.0, reach: 0.0, arm: 0.1 };
         let left = block.after(&Motion { along: 3.0, across: -4.0, turn: 0.0 }, 1.0).unwrap();
         assert!((libm::hypot(left.along, left.across) - (5.0 - 0.5)).abs() < 1e-9, "{left:?}");
         assert!((left.along / left.across + 0.75).abs() < 1e-9);

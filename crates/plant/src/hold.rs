@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     convert::on_the_side_of,
-    friction::{Motion, Rubbed},
+    friction::{Motion, TouchedBody},
     squeeze::Squeeze,
 };
 
@@ -200,7 +200,7 @@ impl Hold {
         let across = Vector::Y.cross(towards);
         let motion = Motion { along: relative.dot(towards), across: relative.dot(across), turn };
         let Load { mass, inertia } = self.load;
-        let rubbed = Rubbed { mass, inertia, reach: reach.length(), arm: self.friction_arm() };
+        let rubbed = TouchedBody { mass, inertia, reach: reach.length(), arm: self.friction_arm() };
         let Some(left) = rubbed.after(&motion, self.limits.friction * dt) else {
             self.set_grip(world, Grip::Sticks);
             return;

@@ -43,13 +43,13 @@ pub struct Offset {
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
-pub struct Perch {
+pub struct HolsterSeat {
     pub up: f64,
     pub speed: f64, // in/s
     pub forward: f64,
 }
 
-impl Perch {
+impl HolsterSeat {
     /// Fall for `dt` seconds, as far as there is room.
     pub fn fall(&mut self, dt: f64) {
         self.speed += GRAVITY * dt;
@@ -89,24 +89,24 @@ impl Holster {
     }
 
     #[must_use]
-    pub fn gripper(&self, perch: &Perch) -> Frame {
+    pub fn gripper(&self, perch: &HolsterSeat) -> Frame {
         self.frame.shifted(Vector::new(-perch.up, 0.0, perch.forward))
     }
 
     #[must_use]
-    pub fn seated(&self) -> Perch {
-        Perch { up: 0.0, speed: 0.0, forward: self.description.seat }
+    pub fn seated(&self) -> HolsterSeat {
+        HolsterSeat { up: 0.0, speed: 0.0, forward: self.description.seat }
     }
 
     /// Landing place of a released gripper; `None` if it misses the cheeks.
     #[must_use]
-    pub fn catch(&self, offset: &Offset) -> Option<Perch> {
+    pub fn catch(&self, offset: &Offset) -> Option<HolsterSeat> {
         let Holsters { catch_height, catch_aside, seat, .. } = self.description;
         let over = (-PRESSED..=catch_height).contains(&offset.up)
             && offset.aside.abs() <= catch_aside
             && (-catch_aside..=seat + catch_aside).contains(&offset.forward)
             && offset.angle <= ASKEW;
-        over.then(|| Perch { up: offset.up.max(0.0), speed: 0.0, forward: self.slide(offset.forward) })
+        over.then(|| HolsterSeat { up: offset.up.max(0.0), speed: 0.0, forward: self.slide(offset.forward) })
     }
 
     /// Position of a gripper that is moved to `forward`: at most at the seat, and drawn to it within the detent.
@@ -228,7 +228,7 @@ mod tests {
     fn seen(up: f64, forward: f64) -> u8 {
         let cell = cell();
         let holster = holster();
-        let gripper = holster.gripper(&Perch { up, speed: 0.0, forward });
+        let gripper = holster.gripper(&HolsterSeat { up, speed: 0.0, forward });
         let beyond = holster.beyond(&gripper, &ears(&cell.holsters, &cell.gripper.parts));
         beyond.iter().enumerate().fold(0, |bits, (bit, beyond)| bits | u8::from(*beyond <= 0.0) << bit)
     }
@@ -248,7 +248,7 @@ mod tests {
         let holster = holster();
         let at = |up: f64, aside: f64, roll: f64| {
             let gripper = holster
-                .gripper(&Perch { up, speed: 0.0, forward: 0.1 })
+                .gripper(&HolsterSeat { up, speed: 0.0, forward: 0.1 })
                 .shifted(Vector::new(0.0, aside, 0.0))
                 .turned(&rotation_by(&Vector::new(roll, 0.0, 0.0)));
             holster.catch(&holster.offset(&gripper))

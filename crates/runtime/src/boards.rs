@@ -109,8 +109,8 @@ impl Controller {
             for board in Board::ALL {
                 observer.message(&format!("  {}", command_line(config, name, *board)));
             }
-            let gathered = within_limit(patience(config) + SET_UP_LIMIT, config.on_stuck, || {
-                coordinator.gather(patience(config), &config.stop, |event, missing| {
+            let gathered = within_limit(wait_limit(config) + SET_UP_LIMIT, config.on_stuck, || {
+                coordinator.gather(wait_limit(config), &config.stop, |event, missing| {
                     announce(event, missing, observer);
                 })
             });
@@ -127,7 +127,7 @@ impl Controller {
         }
         observer.message(&format!("{lost}; the robot waits for a replacement:"));
         observer.message(&format!("  {}", command_line(config, coordinator.name(), lost.board)));
-        let came = coordinator.await_successor(lost, patience(config), &config.stop, |event, missing| {
+        let came = coordinator.await_successor(lost, wait_limit(config), &config.stop, |event, missing| {
             announce(event, missing, observer);
         });
         if let Err(error) = &came {
@@ -171,7 +171,7 @@ fn refused(error: SplitError, config: &RunConfig, job: &Job) -> StartError {
 }
 
 /// Time limit for boards that are started by hand.
-fn patience(config: &RunConfig) -> Duration {
+fn wait_limit(config: &RunConfig) -> Duration {
     Duration::from_secs(config.wait.into())
 }
 

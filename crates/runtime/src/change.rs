@@ -59,7 +59,7 @@ impl Run {
             return Err(ChangeError::Displaced(fault.number));
         }
         if let Some(plan) = &faults.line
-            && (self.robot.is_elsewhere() || !self.closed.line_mut().suffer(plan))
+            && (self.robot.is_elsewhere() || !self.closed.line_mut().apply_faults(plan))
         {
             return Err(ChangeError::Line);
         }

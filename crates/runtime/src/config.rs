@@ -297,7 +297,7 @@ const LONGEST_SILENCE: u16 = 2600;
 impl RobotConfig {
     /// Ticks for which a controller may be silent, if configured.
     #[must_use]
-    pub fn patience(&self) -> Option<u16> {
+    pub fn silence_limit(&self) -> Option<u16> {
         self.silence.map(|seconds| seconds * RESTART_TICKS)
     }
 }
@@ -430,14 +430,14 @@ mod tests {
         assert_eq!(robot("sim").ok(), Some(RobotConfig { kind: RobotKind::Sim, silence: None, lag: None }));
         let kind = RobotKind::Serial(SerialSettings::new("/dev/ttyS0"));
         let port = RobotConfig { kind, silence: None, lag: None };
-        assert_eq!((robot("serial:/dev/ttyS0").ok(), port.patience()), (Some(port.clone()), None));
+        assert_eq!((robot("serial:/dev/ttyS0").ok(), port.silence_limit()), (Some(port.clone()), None));
         let patient = RobotConfig { silence: Some(90), ..port };
         assert_eq!(robot("serial:/dev/ttyS0,silence=90,stop=1").ok(), Some(patient.clone()));
-        assert_eq!(patient.patience(), Some(90 * 25));
+        assert_eq!(patient.silence_limit(), Some(90 * 25));
         let both = robot("sim,lag=300,silence=5").map(|robot| robot.to_string());
         assert_eq!(both, Ok("sim,silence=5,lag=300".into()));
         assert!(robot("sim,lag=1001").is_err() && robot("egm:sim,lag=x").is_err());
-        assert_eq!(robot("sim,silence=5").ok().and_then(|robot| robot.patience()), Some(125));
+        assert_eq!(robot("sim,silence=5").ok().and_then(|robot| robot.silence_limit()), Some(125));
         for wrong in [
             "serial",
             "serial:",

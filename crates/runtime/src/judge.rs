@@ -5,7 +5,7 @@
 //! records, which `--unchecked` permits. PAUSE always passes.
 
 use closed_loop::{JobPlayer, generations::Generations, workstation::SimulatedWorkstation};
-use diagnostics::{Blame, Group, grouped};
+use diagnostics::{Group, Suspects, grouped};
 use interfaces::{CommonMemory, HwsCommand, emove::Holding};
 use neighbours::{
     mailbox::Mailbox,
@@ -143,11 +143,11 @@ pub fn add_paths(store: &mut Store, job: &mut Job, cell: &CellDescription) -> Wa
 fn path_faults(findings: &[&Finding], store: &Store) -> Vec<Fault> {
     let named = |finding: &&&Finding| !finding.data.is_empty();
     let findings: Vec<&Finding> = findings.iter().filter(named).copied().collect();
-    let blame = |finding: &&Finding| Blame {
+    let suspects = |finding: &&Finding| Suspects {
         data: finding.data.iter().map(|datum| datum.name.clone()).collect(),
         error: true,
     };
-    let blames: Vec<Blame> = findings.iter().map(blame).collect();
+    let suspects: Vec<Suspects> = findings.iter().map(suspects).collect();
     let fault = |group: &Group| {
         let first = findings.get(*group.findings.first()?)?;
         let datum = first.data.iter().find(|datum| datum.name == group.datum)?;
@@ -157,7 +157,7 @@ fn path_faults(findings: &[&Finding], store: &Store) -> Vec<Fault> {
         };
         Some(Fault::of_record(datum.at, store.place(datum.at), message))
     };
-    grouped(&blames).iter().filter_map(fault).collect()
+    grouped(&suspects).iter().filter_map(fault).collect()
 }
 
 /// Check that no command of a job uses a record with an error.

@@ -24,20 +24,20 @@ use crate::{
     operator::Input,
 };
 
+use self::error::LOAD_LIMIT;
 pub use self::error::LoadError;
-use self::error::PATIENCE;
 
-const BOARDS_LIMIT: u64 = PATIENCE.as_secs() * 1000 / TICK_MS; // the same time limit in ticks
+const BOARDS_LIMIT: u64 = LOAD_LIMIT.as_secs() * 1000 / TICK_MS; // the same time limit in ticks
 /// Time between two checks of the boards, when the run waits for them.
 const LOOK: Duration = Duration::from_millis(5);
 
-pub enum Asker {
+pub enum LoadSource {
     Operator(Input),
     /// The workstation controller, with this line for the cell.
     Workstation(String),
 }
 
-pub type Answer = (Asker, Result<String, LoadError>);
+pub type Answer = (LoadSource, Result<String, LoadError>);
 
 #[derive(Default)]
 pub struct Loads {
@@ -63,14 +63,14 @@ impl Loads {
 
     /// Withdraw the load that an operator has requested. Its check then has no effect.
     pub fn withdraw(&mut self, who: &str) {
-        if let Some(Loading { asker: Asker::Operator(input), is_withdrawn, .. }) = &mut self.loading {
+        if let Some(Loading { asker: LoadSource::Operator(input), is_withdrawn, .. }) = &mut self.loading {
             *is_withdrawn |= input.source() == who;
         }
     }
 }
 
 struct Loading {
-    asker: Asker,
+    asker: LoadSource,
     number: BlockNumber,
     stage: Stage,
     is_withdrawn: bool,
@@ -90,11 +90,11 @@ impl Run {
     }
 
     /// Load a block. In parallel to the ticks it only begins; [`Run::follow_load`] returns the answer later.
-    pub(crate) fn load(&mut self, number: BlockNumber, asker: Asker) -> Option<Answer> {
+    pub(crate) fn load(&mut self, number: BlockNumber, asker: LoadSource) -> Option<Answer> {
         if let Err(why) = self.can_load() {
             return Some((asker, Err(why)));
         }
-        let inside = matches!(asker, Asker::Workstation(_));
+        let inside = matches!(asker, LoadSource::Workstation(_));
         if self.loads.loader.is_none() {
             return Some((asker, self.load_at_once(number, inside)));
         }
@@ -147,7 +147,7 @@ impl Run {
             loop {
                 match self.boards_have_checked(&loaded) {
                     Ok(true) => break,
-                    Ok(false) if begun.elapsed() < PATIENCE => thread::sleep(LOOK),
+                    Ok(false) if begun.elapsed() < LOAD_LIMIT => thread::sleep(LOOK),
                     Ok(false) => return Err(self.take_back(LoadError::Late)),
                     Err(board) => return Err(self.take_back(LoadError::Differs(board))),
                 }

@@ -275,10 +275,10 @@ impl Neighbours {
     #[must_use]
     pub fn line_at(&self, tick: Tick) -> Option<&str> {
         let is_refused = |step: &BegunStep| step.outcome == Outcome::Failed && step.ticks == 0;
-        let goes_on = |step: &BegunStep| step.outcome == Outcome::Executing;
+        let has_next = |step: &BegunStep| step.outcome == Outcome::Executing;
         let is_meant = |step: &&BegunStep| {
             let since = tick.since(step.began);
-            (tick > step.began || is_refused(step)) && (since <= step.ticks || goes_on(step))
+            (tick > step.began || is_refused(step)) && (since <= step.ticks || has_next(step))
         };
         self.begun_steps().iter().rev().find(is_meant).map(|step| step.text.as_str())
     }

@@ -105,8 +105,8 @@ pub struct Run {
     /// The end of the run for which the robot is brought to rest.
     ramp: Option<Ramp>,
     /// Ticks for which the host waits for an answer. At a port it waits for the first answer as long as `--wait`.
-    patience: Option<u16>,
-    first_patience: Option<u16>,
+    silence_limit: Option<u16>,
+    first_silence_limit: Option<u16>,
     /// The last reported state of the line.
     trouble: Option<&'static str>,
     /// The operator's action before the failed job can continue.
@@ -219,7 +219,7 @@ impl Run {
         }
         Given {
             robot,
-            patience: self.first_patience.or(self.patience),
+            silence_limit: self.first_silence_limit.or(self.silence_limit),
             lag: self.config.robot.lag.or_else(|| self.robot.lag_ms()),
             joystick,
             terminals: *self.operator.at_the_terminals(),

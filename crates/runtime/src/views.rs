@@ -22,7 +22,7 @@ use crate::{
     agreement::places::bodies,
     cell_view::controller,
     neighbours::Neighbours,
-    operator::{Operator, is_led},
+    operator::{Operator, is_moved_by_hand},
 };
 
 /// The sources of the states.
@@ -149,7 +149,7 @@ pub fn commander(neighbours: &Neighbours, operator: &Operator, memory: &CommonMe
         operator: operator.unwrap_or_default().to_owned(),
         connected: connected.to_vec(),
         is_stopped,
-        by_hand: is_led(memory),
+        by_hand: is_moved_by_hand(memory),
     }
 }
 

@@ -56,10 +56,10 @@ fn do_all_steps(console: &mut Terminal, pause: Duration) {
         let begun = Instant::now();
         console.press(if step == LOOK { "y" } else { "\r" });
         let mut pressed = Instant::now();
-        let goes_on = |screen: &str| {
+        let has_next = |screen: &str| {
             step_under_cursor(screen).is_some_and(|(mark, now)| now != step || !mark.is_empty())
         };
-        while !goes_on(&console.screen()) {
+        while !has_next(&console.screen()) {
             let screen = console.screen();
             if begun.elapsed() > PATIENCE {
                 console.press("1");

@@ -12,7 +12,7 @@ use super::{
     Align,
     trace::{Key, Mark, Trace},
 };
-use crate::story::{Chronicle, CommandStory};
+use crate::story::{CommandHistory, CommandStory};
 
 /// A process whose rows fired differently, or at other times.
 #[derive(Debug, Serialize)]
@@ -76,7 +76,7 @@ impl Changes {
             changes.rows.extend(rows(process, other, a, b));
         }
         changes.rows.sort_by_key(|rows| (rows.first[0].min(rows.first[1]), rows.same_order));
-        changes.times(&a.chronicle, &b.chronicle);
+        changes.times(&a.command_history, &b.command_history);
         changes
     }
 
@@ -109,7 +109,7 @@ impl Changes {
         }
     }
 
-    fn times(&mut self, a: &Chronicle, b: &Chronicle) {
+    fn times(&mut self, a: &CommandHistory, b: &CommandHistory) {
         let said = |command: Option<&CommandStory>| {
             command.map_or_else(
                 || "not commanded".to_owned(),

@@ -7,7 +7,7 @@ use record::Log;
 use super::{Align, End};
 use crate::{
     Error,
-    story::{Chronicle, Moment, walk},
+    story::{CommandHistory, Moment, walk},
 };
 
 /// Identifies ticks that are compared with each other: command number, and ticks since the command began.
@@ -25,13 +25,13 @@ pub struct Mark {
 #[derive(Default)]
 pub struct Trace {
     pub marks: Vec<Mark>,
-    pub chronicle: Chronicle,
+    pub command_history: CommandHistory,
     pub end: End,
 }
 
 impl Trace {
     pub fn note(&mut self, moment: &Moment) {
-        self.chronicle.note(moment);
+        self.command_history.note(moment);
         let mut rows = [None; PROCESS_COUNT];
         for (row, process) in rows.iter_mut().zip(ProcessId::ALL) {
             *row = moment.after.header(*process).decided;

@@ -33,7 +33,7 @@ impl Repetition {
     /// Executes a tick; returns false if the run is over.
     pub fn step(&mut self) -> bool {
         let last = self.run.last_tick();
-        let goes_on = self.run.step();
+        let has_next = self.run.step();
         let tick = self.run.last_tick();
         if tick != last {
             let after = *self.run.memory();
@@ -48,7 +48,7 @@ impl Repetition {
             });
             self.before = after;
         }
-        goes_on
+        has_next
     }
 
     /// Runs up to a tick of the log and compares it with the log.

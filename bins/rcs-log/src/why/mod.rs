@@ -33,7 +33,7 @@ use serde::Serialize;
 use self::{rung::Rung, world::World};
 use crate::{
     Answer, Error, print,
-    story::{Chronicle, Moment, open, walk},
+    story::{CommandHistory, Moment, open, walk},
 };
 
 /// Number of log lines shown before a tick.
@@ -118,11 +118,11 @@ pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
 /// [`Error::Read`] if the log cannot be read, [`Error::NoTick`] if it does not have the tick.
 pub fn explanation(log: &Log, path: &Path, requested: Option<u64>) -> Result<Explanation, Error> {
     let (processes, origin) = tables::of_log(log);
-    let (chronicle, history) = read(log, path, processes)?;
-    let failed = chronicle.failed(log).filter(|_| requested.is_none());
+    let (command_history, history) = read(log, path, processes)?;
+    let failed = command_history.failed(log).filter(|_| requested.is_none());
     let reported = match &failed {
         Some(failed) => failed.account.of_process().cloned(),
-        None => chronicle.failure.filter(|_| requested.is_none()),
+        None => command_history.failure.filter(|_| requested.is_none()),
     };
     let chain = failed.as_ref().map(|failed| chain_of(failed, &history));
     let account = failed.as_ref().map(|failed| &failed.account);
@@ -150,14 +150,14 @@ fn chain_of(failed: &FailureResult, history: &History) -> Chain {
 }
 
 /// Reads the commands of a log and the history of every process.
-fn read(log: &Log, path: &Path, processes: Processes) -> Result<(Chronicle, History), Error> {
-    let (mut chronicle, mut history) = (Chronicle::new(processes), History::new(processes));
+fn read(log: &Log, path: &Path, processes: Processes) -> Result<(CommandHistory, History), Error> {
+    let (mut command_history, mut history) = (CommandHistory::new(processes), History::new(processes));
     walk(log, path, |moment| {
-        chronicle.note(moment);
+        command_history.note(moment);
         history.note(moment.tick, &moment.external, &moment.after);
         true
     })?;
-    Ok((chronicle, history))
+    Ok((command_history, history))
 }
 
 /// The last command that led to the first failure in a log, with its tick, if there is a failure.
@@ -165,11 +165,11 @@ fn read(log: &Log, path: &Path, processes: Processes) -> Result<(Chronicle, Hist
 /// # Errors
 /// [`Error::Read`] if the log cannot be read.
 pub fn last_command(log: &Log, path: &Path) -> Result<Option<Link>, Error> {
-    let (chronicle, history) = read(log, path, tables::of_log(log).0)?;
-    if let Some(failed) = chronicle.failed(log) {
+    let (command_history, history) = read(log, path, tables::of_log(log).0)?;
+    if let Some(failed) = command_history.failed(log) {
         return Ok(chain_of(&failed, &history).last_command().cloned());
     }
-    let report = chronicle.failure.and_then(|failure| Report::of(&failure, &history));
+    let report = command_history.failure.and_then(|failure| Report::of(&failure, &history));
     Ok(report.and_then(|(_, mut report)| report.commands.pop()))
 }
 

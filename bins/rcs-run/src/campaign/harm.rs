@@ -121,7 +121,7 @@ impl PartAt {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Harm {
+pub struct Damage {
     pub tick: Tick,
     pub what: String,
     /// The sentence without numbers, by which harms are counted.
@@ -133,9 +133,9 @@ pub struct Harm {
 
 pub struct HarmMonitor {
     seen: usize,
-    harms: Vec<Harm>,
+    harms: Vec<Damage>,
     /// The first part that has slid in the fingers while no point was commanded, such as at the start-up.
-    slide: Option<(String, Harm)>,
+    slide: Option<(String, Damage)>,
     moved: Vec<String>, // parts in contacts that no commanded point has caused
 }
 
@@ -157,7 +157,7 @@ impl HarmMonitor {
 
     /// The first harm that a commanded point has caused, or else the first harm.
     #[must_use]
-    pub fn worst(&self) -> Option<&Harm> {
+    pub fn worst(&self) -> Option<&Damage> {
         self.harms.iter().find(|harm| harm.commanded).or_else(|| self.harms.first())
     }
 
@@ -176,7 +176,7 @@ impl HarmMonitor {
     /// Record a violation, such as a broken invariant.
     pub fn note(&mut self, tick: Tick, what: String) {
         let commanded = !self.is_displaced();
-        self.harms.push(Harm { tick, kind: what.clone(), what, commanded, contact: None });
+        self.harms.push(Damage { tick, kind: what.clone(), what, commanded, contact: None });
     }
 
     pub fn look(&mut self, branch: &Branch<'_>, person: bool) {
@@ -188,7 +188,7 @@ impl HarmMonitor {
             let kind = format!("{mover} runs into {obstacle} during {commands}");
             let harmless = if contact.is_of_robot() { self.is_moved(obstacle) } else { self.is_displaced() };
             let commanded = commanded && !harmless;
-            self.harms.push(Harm { tick, what: contact.to_string(), kind, commanded, contact: Some(at) });
+            self.harms.push(Damage { tick, what: contact.to_string(), kind, commanded, contact: Some(at) });
             if !commanded {
                 let parts = branch.closed.workstation.cell.parts().into_iter().map(|part| part.name);
                 self.moved.extend(parts.filter(|part| part == mover || part == obstacle));
@@ -205,14 +205,14 @@ impl HarmMonitor {
         for event in branch.events.iter().filter(|_| !commanded) {
             if let CellEvent::Slipped { part, .. } = event {
                 let kind = format!("{part} slides in the fingers while no point is commanded");
-                let harm = Harm { tick, what: event.to_string(), kind, commanded, contact: None };
+                let harm = Damage { tick, what: event.to_string(), kind, commanded, contact: None };
                 self.slide.get_or_insert((part.clone(), harm));
             }
         }
         for event in branch.events.iter().filter(|event| event.is_harm()) {
             let kind = format!("{event} during {commands}");
             let commanded = commanded && !self.is_displaced();
-            self.harms.push(Harm { tick, what: kind.clone(), kind, commanded, contact: None });
+            self.harms.push(Damage { tick, what: kind.clone(), kind, commanded, contact: None });
         }
     }
 

@@ -5,7 +5,7 @@
 //!   T3's wrist T3 Interface takes longer for a point; this is permitted;
 //! * E-move's status of the gripper is true: it holds an object, or nothing.
 //!
-//! The first three hold at all times. E-move may be wrong for [`PATIENCE`] ticks after an interruption, because sensors
+//! The first three hold at all times. E-move may be wrong for [`CORRECTION_TICKS`] ticks after an interruption, because sensors
 //! report late.
 
 use executive::alloc;
@@ -23,7 +23,7 @@ use rcs_core::tick::TICK_S;
 use super::branch::Branch;
 
 /// Ticks for which E-move may be wrong about the held object: 5 s, longer than the travel of the fingers.
-const PATIENCE: u32 = 125;
+const CORRECTION_TICKS: u32 = 125;
 /// Longest step from a point to the next, in: 14 in/s (A 2.3) for a tick, and the rounding of two points.
 const STEP_INCHES: f64 = LINK_VELOCITY * TICK_S + 0.02;
 /// The same for 1 rad/s, radians.
@@ -60,7 +60,7 @@ impl Invariants {
         unstamped
             .or_else(|| (allocated > 0).then(|| "the control processes allocate memory".to_owned()))
             .or_else(|| too_far.then(|| "Prim sends a point that is too far from the one before".to_owned()))
-            .or_else(|| misled.filter(|_| self.wrong == PATIENCE))
+            .or_else(|| misled.filter(|_| self.wrong == CORRECTION_TICKS))
     }
 }
 

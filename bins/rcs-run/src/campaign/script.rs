@@ -22,11 +22,11 @@ use super::{
 /// Height by which the robot is moved away, in.
 const RISE: f64 = 3.0;
 /// Distance that a robot continues when the button is released on the way back, in.
-const GOES_ON: f64 = 0.8;
+const OVERRUN: f64 = 0.8;
 /// Longest time for which a button of the joystick box is held down, ticks.
-const LED: u64 = 100;
+const BUTTON_TICKS: u64 = 100;
 /// Ticks for which a refused key of the panel is repeated.
-const PATIENCE: u64 = 2000;
+const KEY_TICKS: u64 = 2000;
 /// Ticks from CYCLE START to the DEPC function: the program makes two short motions.
 const REHEARSAL: u64 = 75;
 /// Ticks for which a fault is on.
@@ -167,7 +167,7 @@ impl Script {
                 }
                 ScriptStep::Key(key) => {
                     let now = branch.at();
-                    let until = *self.until.get_or_insert(Tick(now.0 + PATIENCE));
+                    let until = *self.until.get_or_insert(Tick(now.0 + KEY_TICKS));
                     let busy = branch.closed.workstation.cell.t3().busy();
                     if now < until && (busy || branch.closed.workstation.cell.press(key).is_err()) {
                         return refused;
@@ -179,10 +179,10 @@ impl Script {
                     if self.until.is_none() && matches!(step, ScriptStep::Rise) {
                         self.height = height;
                     }
-                    let until = *self.until.get_or_insert(Tick(now.0 + LED));
+                    let until = *self.until.get_or_insert(Tick(now.0 + BUTTON_TICKS));
                     let (button, there) = match step {
                         ScriptStep::Rise => (BoxButton::Up, height >= self.height + RISE),
-                        _ => (BoxButton::Down, height <= self.height + GOES_ON),
+                        _ => (BoxButton::Down, height <= self.height + OVERRUN),
                     };
                     if now < until && !there {
                         let press = WorkstationAction::Joystick(BoxAction::Press(button, 1));

@@ -261,12 +261,12 @@ impl Trial<'_, '_> {
     /// True if the state may be a known one. A branch without interruption runs to its end.
     fn is_comparable(&self) -> bool {
         let was_interrupted = *self.kind() != Kind::None && self.next().is_none();
-        let goes_on = self.following && self.motion.is_none();
+        let has_next = self.following && self.motion.is_none();
         let harmless = self.monitor.has_seen_nothing()
             && self.mismatch.is_none()
             && !self.tears
             && self.untrue.is_empty();
-        Known::compares(self.branch.at()) && was_interrupted && goes_on && harmless && self.invariants.hold()
+        Known::compares(self.branch.at()) && was_interrupted && has_next && harmless && self.invariants.hold()
     }
 
     fn state(&mut self) -> Result<Digest, Error> {

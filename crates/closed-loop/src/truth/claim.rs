@@ -5,12 +5,12 @@ use taskdata::files::{Place, PoseId, TaskData};
 
 use super::{
     Scene,
+    contradiction::{Contradiction, expect},
     history::History,
     parts::{holds_nothing, is_held, is_held_alone, is_in_drum, is_out_of_drum, is_placed, lies_at},
     robot::{is_at, is_linked, is_near, is_open, stops, touches, wears, wears_none},
     seen::{Movement, at_part, is_located},
     tolerance::{THERE_DEGREES, THERE_INCHES},
-    untruth::{Untruth, expect},
 };
 
 /// A claim about the cell. Frames are world frames, in.
@@ -136,7 +136,7 @@ impl Claim {
     }
 
     /// Compare the claim with the cell. Errors: the actual state.
-    pub fn check(&self, scene: &Scene<'_>, history: &History) -> Result<(), Untruth> {
+    pub fn check(&self, scene: &Scene<'_>, history: &History) -> Result<(), Contradiction> {
         let cell = scene.cell;
         match self {
             Self::At { goal, name } => is_at(cell, &[*goal], name, THERE_INCHES, THERE_DEGREES),

@@ -13,6 +13,7 @@
 //! failed. The judge never rejects an error: `rcs-run campaign --truth` shows that its remedy leads to a finished job.
 
 mod claim;
+mod contradiction;
 mod emove;
 mod history;
 mod parts;
@@ -25,7 +26,6 @@ mod task;
 #[cfg(test)]
 mod tests;
 pub mod tolerance;
-mod untruth;
 
 use std::fmt;
 
@@ -37,7 +37,7 @@ use serde::{Deserialize, Serialize};
 use taskdata::files::TaskData;
 
 use self::history::History;
-pub use self::{claim::Claim, untruth::Untruth};
+pub use self::{claim::Claim, contradiction::Contradiction};
 
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub enum Level {
@@ -221,7 +221,7 @@ impl TruthCheck {
                 .claims
                 .iter()
                 .filter_map(|claim| Some((claim, claim.check(scene, &self.history).err()?)));
-            let Some((claim, Untruth { text, not_sensed })) = found.next() else {
+            let Some((claim, Contradiction { text, not_sensed })) = found.next() else {
                 if order.claims.iter().any(Claim::is_of_grasp) {
                     self.history.note_in_place(scene.cell);
                 }

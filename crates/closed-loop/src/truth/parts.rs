@@ -6,9 +6,9 @@ use rcs_core::name::Name16;
 
 use super::{
     NotSensed, Scene,
+    contradiction::{Contradiction, expect},
     history::{History, apart},
     tolerance::{GRIP_INCHES, WIDTH_INCHES},
-    untruth::{Untruth, expect},
 };
 
 pub fn named<'p>(parts: &'p [PartState], object: &'p str) -> impl Iterator<Item = &'p PartState> {
@@ -27,10 +27,10 @@ pub fn is_held(
     object: &Name16,
     place: &[Frame],
     unseen: bool,
-) -> Result<(), Untruth> {
+) -> Result<(), Contradiction> {
     let cell = scene.cell;
     let Some(id) = cell.held() else {
-        return Err(Untruth::is_false(format!("the robot does not hold {object}: it holds nothing")));
+        return Err(Contradiction::sensed(format!("the robot does not hold {object}: it holds nothing")));
     };
     let (Some(kind), Some(frame)) = (cell.part_kind(id), cell.part_frame(id)) else { return Ok(()) };
     if kind.name != object.as_str() {
@@ -46,7 +46,7 @@ pub fn is_held(
         } else {
             None
         };
-        return Err(Untruth { text, not_sensed });
+        return Err(Contradiction { text, not_sensed });
     }
     let Some(meant) = place.first() else { return Ok(()) };
     let is = cell.t3().arm().tool().inverse().compose(&frame).position;
@@ -63,7 +63,7 @@ pub fn is_held(
     } else {
         history.displaced(id).or_else(|| history.occupied(cell, id))
     };
-    Err(Untruth { text, not_sensed })
+    Err(Contradiction { text, not_sensed })
 }
 
 /// True if the fingers cannot distinguish two kinds: they have a width in common.
@@ -71,19 +71,19 @@ pub fn same_width(one: &PartType, other: &PartType) -> bool {
     one.size.iter().any(|a| other.size.iter().any(|b| (a - b).abs() <= WIDTH_INCHES))
 }
 
-pub fn is_held_alone(cell: &Cell) -> Result<(), Untruth> {
+pub fn is_held_alone(cell: &Cell) -> Result<(), Contradiction> {
     let both = cell.held().and_then(|id| cell.holders(id)).is_some_and(|holders| holders.pedestal);
     expect(!both, || "the pedestal still holds the part, too".to_owned())
 }
 
-pub fn holds_nothing(cell: &Cell) -> Result<(), Untruth> {
+pub fn holds_nothing(cell: &Cell) -> Result<(), Contradiction> {
     let held = cell.held().and_then(|id| cell.part_kind(id));
     expect(held.is_none(), || {
         format!("the robot still holds {}", held.map_or("something", |kind| kind.name.as_str()))
     })
 }
 
-pub fn is_placed(cell: &Cell, history: &History, object: &Name16, goal: &Frame) -> Result<(), Untruth> {
+pub fn is_placed(cell: &Cell, history: &History, object: &Name16, goal: &Frame) -> Result<(), Contradiction> {
     // Without a release since the start of the judge, Task's claim about the location decides.
     let Some(released) = history.released() else { return Ok(()) };
     let parts = cell.parts();
@@ -93,7 +93,7 @@ pub fn is_placed(cell: &Cell, history: &History, object: &Name16, goal: &Frame) 
         .or_else(|| history.displaced(released.id))
         .or_else(|| history.occupied(cell, released.id));
     let Some(part) = parts.iter().find(|part| part.id == released.id) else {
-        return Err(Untruth { text: format!("{object} is not in the cell"), not_sensed });
+        return Err(Contradiction { text: format!("{object} is not in the cell"), not_sensed });
     };
     if part.name != object.as_str() {
         return Ok(());
@@ -102,14 +102,14 @@ pub fn is_placed(cell: &Cell, history: &History, object: &Name16, goal: &Frame) 
     let off = apart(&released.tool.position, &goal.position);
     if off > tolerance {
         let text = format!("{object} was released {off:.2} in from its goal, {tolerance} in allowed");
-        return Err(Untruth::is_false(text));
+        return Err(Contradiction::sensed(text));
     }
     let moved = apart(&Vector::from(part.position), &released.part.position);
     if moved > tolerance {
         let text = format!(
             "{object} is {moved:.2} in from where the fingers have released it, {tolerance} in allowed"
         );
-        return Err(Untruth { text, not_sensed });
+        return Err(Contradiction { text, not_sensed });
     }
     Ok(())
 }
@@ -119,7 +119,7 @@ pub fn lies_at(
     history: &History,
     object: &Name16,
     (location, sector): &(String, u16),
-) -> Result<(), Untruth> {
+) -> Result<(), Contradiction> {
     let parts = cell.parts();
     let there = |part: &&PartState| !part.held && part.location == *location && part.sector == *sector;
     if named(&parts, object.as_str()).any(|part| there(&part)) {
@@ -150,7 +150,7 @@ pub fn lies_at(
             history.displaced(released.id).or_else(|| history.occupied(cell, released.id))
         })
     };
-    Err(Untruth { text, not_sensed })
+    Err(Contradiction { text, not_sensed })
 }
 
 /// Distance of the nearest part of a name from its place in the drum, in: along the axis, and across it.
@@ -163,7 +163,7 @@ pub fn from_drum(cell: &Cell, object: &Name16) -> Option<(u32, f64, f64)> {
     named(&parts, object.as_str()).filter_map(of).min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
 }
 
-pub fn is_in_drum(cell: &Cell, history: &History, object: &Name16) -> Result<(), Untruth> {
+pub fn is_in_drum(cell: &Cell, history: &History, object: &Name16) -> Result<(), Contradiction> {
     let seated = cell.description().drum.seated;
     let (text, id) = match from_drum(cell, object) {
         Some((_, left, aside)) if left.abs() <= seated && aside <= seated => return Ok(()),
@@ -176,10 +176,10 @@ pub fn is_in_drum(cell: &Cell, history: &History, object: &Name16) -> Result<(),
     };
     let since = history.released().map(|released| released.tick);
     let changed = id.zip(since).is_some_and(|(id, since)| history.is_changed_since(id, since));
-    Err(Untruth { text, not_sensed: changed.then_some(NotSensed::ChangedAfterLook) })
+    Err(Contradiction { text, not_sensed: changed.then_some(NotSensed::ChangedAfterLook) })
 }
 
-pub fn is_out_of_drum(cell: &Cell, object: &Name16) -> Result<(), Untruth> {
+pub fn is_out_of_drum(cell: &Cell, object: &Name16) -> Result<(), Contradiction> {
     let length = cell.description().drum.detent_length;
     let inside = from_drum(cell, object).filter(|(_, left, _)| *left <= length);
     expect(inside.is_none(), || format!("{object} is still in the drum"))

@@ -30,8 +30,8 @@ enum Goal {
 struct Moved {
     goal: Goal,
     command: String,
-    let_go: [f64; 3],     // last position in the hand, world coordinates, in
-    astray: Option<Tick>, // first tick off its place; `None` while at its place
+    let_go: [f64; 3],        // last position in the hand, world coordinates, in
+    misplaced: Option<Tick>, // first tick off its place; `None` while at its place
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -102,9 +102,9 @@ impl PlacementCheck {
         for part in parts.iter().filter(|part| open.is_none_or(|moved| !moved.contains(&part.id))) {
             let Some(moved) = self.moved.get_mut(&part.id) else { continue };
             if is_there(&moved.goal, moved.let_go, self.tolerance, cell, part) {
-                moved.astray = None;
-            } else if moved.astray.is_none() {
-                moved.astray = Some(tick);
+                moved.misplaced = None;
+            } else if moved.misplaced.is_none() {
+                moved.misplaced = Some(tick);
             }
         }
     }
@@ -149,8 +149,8 @@ impl PlacementCheck {
             };
             let InHand { at, last } =
                 self.in_hand.get(&part.id).copied().unwrap_or(InHand { at: part.position, last: tick });
-            let astray = (!is_there(&goal, at, self.tolerance, cell, part)).then_some(last);
-            self.moved.insert(part.id, Moved { goal, command: command.clone(), let_go: at, astray });
+            let misplaced = (!is_there(&goal, at, self.tolerance, cell, part)).then_some(last);
+            self.moved.insert(part.id, Moved { goal, command: command.clone(), let_go: at, misplaced });
         }
         let source = place(attempt.command.source, attempt.command.source_sector);
         if attempt.command.command.as_str() == "POSITION" {
@@ -169,9 +169,9 @@ impl PlacementCheck {
     /// The failure of a finished job: the first part off its place, if any.
     #[must_use]
     pub fn verdict(&self, parts: &[PartState]) -> Option<Failure> {
-        let astray = parts.iter().filter_map(|part| {
+        let misplaced = parts.iter().filter_map(|part| {
             let moved = self.moved.get(&part.id)?;
-            let tick = moved.astray?;
+            let tick = moved.misplaced?;
             let place = match &moved.goal {
                 Goal::Gripper => "in the gripper".to_owned(),
                 Goal::At(Some((location, 0))) => format!("at {location}, within {}", Length(self.tolerance)),
@@ -186,7 +186,7 @@ impl PlacementCheck {
         let empty = self.empty.iter().map(|(tick, command)| {
             (*tick, format!("{command} has finished, but the gripper has had no part meanwhile"))
         });
-        let (tick, text) = astray.chain(empty).min_by_key(|(tick, _)| *tick)?;
+        let (tick, text) = misplaced.chain(empty).min_by_key(|(tick, _)| *tick)?;
         Some(Failure::outside(tick, Kind::Misplaced, "cell", text))
     }
 }

@@ -7,11 +7,11 @@ use taskdata::files::MovtabId;
 
 use super::{
     NotSensed, Scene,
+    contradiction::{Contradiction, expect},
     history::History,
     parts::is_alike,
     robot::is_at,
     tolerance::{SEEN_DEGREES, SEEN_INCHES},
-    untruth::{Untruth, expect},
 };
 
 /// A movetable, resolved: the motion from a reference frame to the goal, in the axes of the reference.
@@ -65,7 +65,7 @@ pub fn at_part(
     object: &str,
     near: &Frame,
     Movement(movetable): Movement,
-) -> Result<(), Untruth> {
+) -> Result<(), Contradiction> {
     let changed = history.is_any_changed_since_look(object).then_some(NotSensed::ChangedAfterLook);
     let found = meant(scene, object, &near.position, report(scene).as_ref());
     let checked = match &found {
@@ -73,7 +73,7 @@ pub fn at_part(
             let other = looks_like(scene, object, near, SECTOR_INCHES);
             let text = format!("{} lies there, no {object}", other.as_deref().unwrap_or("nothing"));
             let not_sensed = other.map(|_| NotSensed::EqualPart);
-            return Err(Untruth { text, not_sensed: not_sensed.or(changed) });
+            return Err(Contradiction { text, not_sensed: not_sensed.or(changed) });
         }
         Some(part) => {
             let goals: Vec<_> =
@@ -81,7 +81,7 @@ pub fn at_part(
             is_at(scene.cell, &goals, object, SEEN_INCHES, SEEN_DEGREES)
         }
     };
-    checked.map_err(|untruth| Untruth { not_sensed: changed, ..untruth })
+    checked.map_err(|contradiction| Contradiction { not_sensed: changed, ..contradiction })
 }
 
 pub fn is_located(
@@ -89,9 +89,9 @@ pub fn is_located(
     history: &History,
     object: &Name16,
     near: &Frame,
-) -> Result<(), Untruth> {
+) -> Result<(), Contradiction> {
     let Some(reported) = report(scene) else {
-        return Err(Untruth::is_false(format!("E-move reports no place of {object}")));
+        return Err(Contradiction::sensed(format!("E-move reports no place of {object}")));
     };
     let Some(part) = meant(scene, object.as_str(), &near.position, Some(&reported)) else {
         let looks_like = looks_like(scene, object.as_str(), &reported, SEEN_INCHES);
@@ -102,7 +102,7 @@ pub fn is_located(
         let equal = looks_like.is_some().then_some(NotSensed::EqualPart);
         let changed = history.is_any_changed_since_look(object.as_str());
         let not_sensed = equal.or_else(|| changed.then_some(NotSensed::ChangedAfterLook));
-        return Err(Untruth { text, not_sensed });
+        return Err(Contradiction { text, not_sensed });
     };
     let far = seen(scene.cell, &part)
         .iter()

@@ -15,7 +15,7 @@ use rcs_core::{name::Name16, tick::Tick};
 use taskdata::load::Store;
 
 use super::{
-    Claim, Confirmation, Level, NotSensed, Scene, TruthCheck, Untruth, Verdict,
+    Claim, Confirmation, Contradiction, Level, NotSensed, Scene, TruthCheck, Verdict,
     history::{History, Released},
 };
 
@@ -66,7 +66,7 @@ impl Bench {
         self.history.released = Some(Released { id, tick: TICK, tool: self.tool(), part });
     }
 
-    fn check(&self, claim: &Claim) -> Result<(), Untruth> {
+    fn check(&self, claim: &Claim) -> Result<(), Contradiction> {
         let data = &self.store.view();
         let scene = Scene { tick: TICK, hws: &self.hws, memory: &self.memory, data, cell: &self.cell };
         claim.check(&scene, &self.history)
@@ -99,7 +99,7 @@ fn a_goal_beyond_the_tolerance_is_untrue() {
         bench.check(&Claim::At { goal, name: "HOME".into() })
     };
     assert_eq!((at(0.0, 0.0), at(0.03, 0.1)), (Ok(()), Ok(())));
-    let Untruth { text, not_sensed } = at(0.05, 0.0).expect_err("it is 0.05 in away");
+    let Contradiction { text, not_sensed } = at(0.05, 0.0).expect_err("it is 0.05 in away");
     assert!(text.contains("0.050 in") && text.contains("from HOME") && not_sensed.is_none(), "{text}");
     assert!(at(0.0, 0.2).is_err());
 }
@@ -131,7 +131,7 @@ fn a_part_in_another_sector_does_not_lie_at_its_place() {
     bench.put("LINKBAR1_BH", "UNIT_1", 4);
     let at = |sector| Claim::LiesAt { object: name("LINKBAR1_BH"), place: ("UNIT_1".into(), sector) };
     assert_eq!(bench.check(&at(4)), Ok(()));
-    let Untruth { text, not_sensed } = bench.check(&at(1)).expect_err("it is in another sector");
+    let Contradiction { text, not_sensed } = bench.check(&at(1)).expect_err("it is in another sector");
     assert_eq!((text.as_str(), not_sensed), ("no LINKBAR1_BH is at UNIT_1 1, but at UNIT_1 4", None));
 }
 

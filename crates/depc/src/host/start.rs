@@ -120,13 +120,13 @@ impl Host {
     }
 
     /// Counts a tick with DTR on in a start or an unanswered cancel.
-    pub(super) fn be_patient(&mut self) {
+    pub(super) fn count_silence(&mut self) {
         if !matches!(self.state, HostState::Starting | HostState::Cancelling) {
             return;
         }
         self.starting = self.starting.saturating_add(1);
         self.silent |= self.starting >= RESTART_TICKS;
-        if self.starting >= self.patience && !self.has_candidate {
+        if self.starting >= self.silence_limit && !self.has_candidate {
             let silent = self.attempt == LinkFault::None;
             self.note_fault(if silent { LinkFault::NotResponding } else { self.attempt });
         }

@@ -73,9 +73,9 @@ fn unsent_bytes_of_the_port_are_lost_and_reported() {
     // A later answer does not belong to this command.
     assert_eq!(tick(&mut host, &[0x06], &position(NO_FUNCTION)), (HostEvent::None, vec![0x05]));
     assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
-    host.forgive();
+    host.clear_fault();
     // A restart that the port does not send is repeated, and is the fault at the time limit.
-    host.set_patience(4);
+    host.set_silence_limit(4);
     tick(&mut host, &[], &Intent::Restart);
     for attempt in 1..=4 {
         assert_eq!(host.fault(), LinkFault::None, "attempt {attempt}");
@@ -103,7 +103,7 @@ fn without_an_answer_the_link_restarts_and_no_command_is_repeated() {
     assert_eq!(host.state(), HostState::Starting);
     assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
     assert_eq!(host.fault(), LinkFault::NotResponding);
-    host.forgive();
+    host.clear_fault();
     assert_eq!(host.fault(), LinkFault::None);
 }
 
@@ -111,7 +111,7 @@ fn without_an_answer_the_link_restarts_and_no_command_is_repeated() {
 fn unanswered_start_is_repeated_once_per_second_until_the_time_limit() {
     let mut host = Host::new(ANSWER_TICKS);
     let mut sent = Vec::new();
-    for number in 1..=u32::from(PATIENCE_TICKS) {
+    for number in 1..=u32::from(SILENCE_LIMIT_TICKS) {
         assert_eq!((host.fault(), host.is_silent()), (LinkFault::None, number > 25), "tick {number}");
         if tick(&mut host, &[], &Intent::Idle).1 == [0x05] {
             sent.push(number);
@@ -120,7 +120,7 @@ fn unanswered_start_is_repeated_once_per_second_until_the_time_limit() {
     assert_eq!(sent[..4], [4, 29, 54, 79]);
     assert_eq!((host.fault(), host.counters().restarts), (LinkFault::NotResponding, 60));
     // RESTART resets the time limit, but the silence continues; the answer to the previous 05 is sufficient.
-    host.forgive();
+    host.clear_fault();
     assert_eq!(tick(&mut host, &[], &Intent::Restart).1, []);
     assert_eq!((host.fault(), host.is_silent()), (LinkFault::None, true));
     tick(&mut host, &report(), &Intent::Idle); // as after the end of Hold: one report for all restarts
@@ -133,13 +133,13 @@ fn unanswered_start_is_repeated_once_per_second_until_the_time_limit() {
 #[test]
 fn configured_time_limit_ends_a_silence() {
     let mut host = running();
-    host.set_patience(50);
+    host.set_silence_limit(50);
     tick(&mut host, &[], &position(NO_FUNCTION));
     for _ in 0..3 {
         tick(&mut host, &[], &Intent::Idle);
     }
     assert_eq!(host.fault(), LinkFault::NotResponding);
-    host.forgive();
+    host.clear_fault();
     let blamed = (1..200).find(|_| {
         tick(&mut host, &[], &Intent::Idle);
         host.fault() != LinkFault::None
@@ -421,7 +421,7 @@ fn cancel_with_nak_and_ack_in_one_tick_is_acknowledged() {
 #[test]
 fn unanswered_cancel_fails_at_the_time_limit() {
     let mut host = running();
-    host.set_patience(30);
+    host.set_silence_limit(30);
     tick(&mut host, &[], &Intent::Cancel);
     let blamed = (1..100).find(|_| {
         tick(&mut host, &[], &Intent::Idle);

@@ -204,7 +204,7 @@ pub struct State {
 impl State {
     pub fn first(setting: &Setting) -> Self {
         let mut host = Host::new(ANSWER_TICKS);
-        host.set_patience(PATIENCE);
+        host.set_silence_limit(PATIENCE);
         Self {
             host,
             controller: Controller::new(Limits::NBS),
@@ -242,7 +242,7 @@ impl State {
         match event {
             HostEvent::Acknowledged if !is_true => return Err("a false answer is accepted"),
             HostEvent::Started if !is_true => return Err("a false report is accepted"),
-            HostEvent::Started => self.host.forgive(),
+            HostEvent::Started => self.host.clear_fault(),
             HostEvent::Acknowledged | HostEvent::Lost | HostEvent::None => {}
         }
         self.outstanding &= event == HostEvent::None;
@@ -254,7 +254,7 @@ impl State {
             Wanted::Cancel => Intent::Cancel,
         };
         if wanted == Wanted::Restart {
-            self.host.forgive();
+            self.host.clear_fault();
         }
         let mut tx = LinkBytes::default();
         let sent = self.host.transmit(&intent, &mut tx);

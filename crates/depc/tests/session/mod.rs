@@ -187,7 +187,7 @@ impl Session {
                 self.position = Position::reported(self.host.position(), &T3);
                 self.truth.started += 1;
                 self.truth.false_reports += u64::from(self.position.plate != self.robot.at);
-                self.host.forgive();
+                self.host.clear_fault();
                 None
             }
             HostEvent::None | HostEvent::Lost => None,

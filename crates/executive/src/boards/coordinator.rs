@@ -152,11 +152,11 @@ impl Coordinator {
     /// the missing ones. Fails if a board does not join, or has another program, data or job.
     pub fn gather(
         &mut self,
-        patience: Duration,
+        wait_limit: Duration,
         stop: &AtomicBool,
         mut heard: impl FnMut(BoardEvent, &[Board]),
     ) -> Result<(), SplitError> {
-        let deadline = Instant::now() + patience;
+        let deadline = Instant::now() + wait_limit;
         for look in 1_u32.. {
             for at in 0..self.seats.len() {
                 if self.look_for(at)? {
@@ -180,7 +180,7 @@ impl Coordinator {
                 return Err(SplitError::Interrupted(missing));
             }
             if Instant::now() > deadline {
-                return Err(SplitError::Missing { missing, patience });
+                return Err(SplitError::Missing { missing, wait_limit });
             }
             if let Some((giver, _)) = &self.ports {
                 sleep(&giver.done, GATHER);
@@ -243,12 +243,12 @@ impl Coordinator {
     pub fn await_successor(
         &mut self,
         lost: &Lost,
-        patience: Duration,
+        wait_limit: Duration,
         stop: &AtomicBool,
         heard: impl FnMut(BoardEvent, &[Board]),
     ) -> Result<(), SplitError> {
         self.vacate(lost.board.index());
-        self.gather(patience, stop, heard)
+        self.gather(wait_limit, stop, heard)
     }
 
     fn vacate(&mut self, at: usize) {

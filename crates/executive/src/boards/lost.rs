@@ -28,10 +28,10 @@ pub enum SplitError {
     Ended { board: Board, status: ExitStatus },
     #[error("{board} (process {pid}) cannot take part: {difference}")]
     Different { board: Board, pid: u32, difference: &'static str },
-    #[error("{} did not come within {} s", list(.missing), .patience.as_secs())]
+    #[error("{} did not come within {} s", list(.missing), .wait_limit.as_secs())]
     Missing {
         missing: Vec<Board>,
-        patience: Duration, // time for which board 0 waited for them
+        wait_limit: Duration, // time for which board 0 waited for them
     },
     #[error("interrupted while waiting for {}", list(.0))]
     Interrupted(Vec<Board>),

@@ -371,7 +371,7 @@ mod tests {
 
     #[test]
     fn egm_resumes_after_an_emergency_stop_only_if_configured() {
-        for (do_not_restart, goes_on) in [(true, false), (false, true)] {
+        for (do_not_restart, has_next) in [(true, false), (false, true)] {
             let mut bench = Bench::new(Tuning { do_not_restart, ..Tuning::default() });
             bench.target.position[2] += 100.0;
             bench.cycles(20);
@@ -382,7 +382,7 @@ mod tests {
             assert_eq!(bench.robot.pose(), stood);
             bench.robot.motors_on();
             bench.cycles(100);
-            assert_eq!(bench.robot.pose() != stood, goes_on);
+            assert_eq!(bench.robot.pose() != stood, has_next);
             bench.robot.start();
             bench.cycles(1000);
             assert!(bench.off() < 0.1);

@@ -47,7 +47,7 @@ const PERIOD: Duration = Duration::from_millis(100);
 /// Interval at which the thread checks whether it should end.
 const LOOK: Duration = Duration::from_millis(10);
 /// Longest wait for the thread at the start and the end of a run.
-const PATIENCE: Duration = Duration::from_secs(2);
+const MIRROR_LIMIT: Duration = Duration::from_secs(2);
 const MESSAGE: usize = 16 * 1024; // greatest size of a message, bytes: about five times the usual size
 const MAX_SUBSCRIBERS: usize = 8; // greatest number of monitors at a time
 
@@ -83,11 +83,11 @@ impl Mirror {
         };
         let failed = |source| SharedMemoryError::Io { path: place::place(name, &place::layout()), source };
         let thread = thread::Builder::new().name("mirror".into()).spawn(work).map_err(failed)?;
-        let opened = opened.recv_timeout(PATIENCE).unwrap_or_else(|_| {
+        let opened = opened.recv_timeout(MIRROR_LIMIT).unwrap_or_else(|_| {
             stop.store(true, Ordering::Relaxed);
             Err(SharedMemoryError::Late {
                 what: "setting up the service of the status".to_owned(),
-                limit: PATIENCE,
+                limit: MIRROR_LIMIT,
             })
         });
         opened?;
@@ -155,7 +155,7 @@ impl Drop for Mirror {
         let Some(thread) = self.thread.take() else { return };
         let started = Instant::now();
         // Memory that other processes can write could block the thread forever; the end of a run does not depend on it.
-        while !thread.is_finished() && started.elapsed() < PATIENCE {
+        while !thread.is_finished() && started.elapsed() < MIRROR_LIMIT {
             thread::sleep(Duration::from_millis(1));
         }
         if thread.is_finished() {

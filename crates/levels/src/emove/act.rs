@@ -82,7 +82,7 @@ impl State {
             Action::RobotInit => self.motion.initialize(inputs, outputs),
             Action::Pause => {
                 self.stop_robot(inputs, outputs);
-                if self.is_letting_go() {
+                if self.is_releasing() {
                     self.held.pause_release();
                 }
                 let request = FingerOrder { order: FingerVerb::Pause, ..FingerOrder::default() };

@@ -11,9 +11,9 @@ use crate::jaws::{CylindricalPartGripper, JawsKind, Parameters, ToolGripper};
 const PARTS_CLOSED: i32 = 10; // 0.01 in
 const PARTS_BAND: i32 = 2; // 0.01 in (the servo's own band, `levels::grip`)
 const STILL: i32 = 10; // 0.01 in/s: above the noise of the potentiometer, below the slowest motion by air
-const LET_GO: i32 = 25; // 0.01 in more than the grasp: the object is released
+const RELEASE_OPENING: i32 = 25; // 0.01 in more than the grasp: the object is released
 /// Least force of a contact, lb. Forces are reported in whole pounds, and no grasp is weaker than 3 lb.
-const FELT: i32 = 1;
+const CONTACT_FORCE: i32 = 1;
 const JAWS_BAND: i32 = 10; // 0.01 in: opening of jaws on an object of the grasp size (ASSUMED)
 const STOP_BAND: i32 = 5; // 0.01 in
 
@@ -170,14 +170,17 @@ impl EmoveGripper {
     /// True if an object grasped at the opening `grasped` still keeps the fingers apart (0.01 in).
     #[must_use]
     pub fn still_grips(self, opening: i32, grasp_size: i32, grasped: i32) -> bool {
-        self.grips(opening, grasp_size) && opening <= grasped.saturating_add(LET_GO)
+        self.grips(opening, grasp_size) && opening <= grasped.saturating_add(RELEASE_OPENING)
     }
 
     /// True if the sensors detect no object. Only a calibrated parts gripper can report this.
     #[must_use]
-    pub fn feels_nothing(self, memory: &CommonMemory) -> bool {
+    pub fn senses_nothing(self, memory: &CommonMemory) -> bool {
         let grip = &memory.grip.status;
-        self == Self::Parts && grip.initialized && grip.left_force < FELT && grip.right_force < FELT
+        self == Self::Parts
+            && grip.initialized
+            && grip.left_force < CONTACT_FORCE
+            && grip.right_force < CONTACT_FORCE
     }
 
     pub(super) fn closes_for(self, opening: i32) -> bool {

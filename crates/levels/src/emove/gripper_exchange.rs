@@ -34,7 +34,7 @@ use super::{
     gripper::{EmoveGripper, is_open},
     localization::{ASIDE_INCHES, LOST_RADIANS, path::beside},
     motion::relative::Relative,
-    robot_place::{base, gone_to, is_led, present_frame, robot_at},
+    robot_place::{base, gone_to, is_moved_by_hand, present_frame, robot_at},
     tables::{EmoveHolster, ExchangePosition, Lock, Ring, Shut},
 };
 
@@ -252,7 +252,7 @@ impl GripperExchange {
         let base = exchange.place.pose.to_frame().ok();
         let points = base.and_then(|base| HolsterPoints::of(&exchange.place.site, &base, inputs.data));
         let along = points.map_or(ExchangePosition::Off, |points| points.along(&present));
-        if along == ExchangePosition::Off && !is_led(inputs.memory) {
+        if along == ExchangePosition::Off && !is_moved_by_hand(inputs.memory) {
             self.holster = None;
         }
     }

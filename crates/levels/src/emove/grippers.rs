@@ -250,7 +250,7 @@ impl Grippers {
     }
 
     #[must_use]
-    pub fn has_let_go(&self, tick: Tick, memory: &CommonMemory) -> bool {
+    pub fn has_released(&self, tick: Tick, memory: &CommonMemory) -> bool {
         self.order == FingerVerb::Release && self.status(tick, memory) == Lower::Done
     }
 

@@ -16,7 +16,7 @@ use super::{
     grippers::{FingerVerb, Grippers},
     localization::{LOST_INCHES, LOST_RADIANS},
     motion::route::FULL_OPENING,
-    robot_place::{is_led, may_push, near, present_frame},
+    robot_place::{is_moved_by_hand, may_push, near, present_frame},
     tables::{EmoveLoad, Fingers},
 };
 use crate::execution::{Execution, Outcome};
@@ -117,7 +117,7 @@ impl HeldObject {
 
     /// True if a release has begun at the robot's place and has not ended.
     #[must_use]
-    pub const fn is_letting_go(&self, at_place: bool) -> bool {
+    pub const fn is_releasing(&self, at_place: bool) -> bool {
         self.releasing && self.held.is_some() && at_place
     }
 
@@ -147,7 +147,7 @@ impl HeldObject {
         let attached = EmoveGripper::attached(memory);
         // Open fingers sense nothing, so this reading proves nothing before they have closed.
         let closing = grippers.order() == FingerVerb::Grasp && grippers.are_moving(tick, memory);
-        self.empty |= grippers.has_let_go(tick, memory);
+        self.empty |= grippers.has_released(tick, memory);
         match attached.felt(memory) {
             Felt::Nothing => self.empty |= !closing,
             Felt::Something
@@ -201,7 +201,7 @@ impl HeldObject {
         let prim = &memory.prim.status;
         let is_off = prim.controller_off || prim.report == PrimReport::T3LinkOff;
         let is_off = is_off || !is_sensed;
-        if !is_led(memory) && !is_off {
+        if !is_moved_by_hand(memory) && !is_off {
             return;
         }
         let have_closed = !self.empty && (self.held.is_some() || self.grasping.is_some());
@@ -242,10 +242,10 @@ impl HeldObject {
     ) {
         let memory = inputs.memory;
         let Some(held) = self.held else { return };
-        let letting_go = self.is_letting_go(at.is_some());
+        let letting_go = self.is_releasing(at.is_some());
         let gripper = EmoveGripper::of(held.gripper);
         // A part held with little force hardly moves the fingers when it falls: only the force shows the loss.
-        let felt = letting_go || !gripper.feels_nothing(memory);
+        let felt = letting_go || !gripper.senses_nothing(memory);
         self.unfelt = if felt { 0 } else { self.unfelt.saturating_add(1) };
         // A restarted gripper has no opening yet, which does not prove a loss.
         let slipped = !letting_go
@@ -254,15 +254,15 @@ impl HeldObject {
                 .is_some_and(|opening| !gripper.still_grips(opening, held.grasp_size, held.opening));
         let gone = EmoveGripper::attached(memory) != gripper;
         let unfelt = self.unfelt > UNFELT_TICKS;
-        let has_let_go = grippers.has_let_go(inputs.tick, memory);
-        if slipped || unfelt || gone || has_let_go {
+        let has_released = grippers.has_released(inputs.tick, memory);
+        if slipped || unfelt || gone || has_released {
             (self.held, self.grasping, self.gripper_gone) = (None, None, gone);
             let let_go = |at: &RobotPlace| PlacedObject {
                 object: held.object.object,
                 grip: held.object.grip,
                 site: at.site,
             };
-            let put = at.filter(|_| has_let_go && !gone);
+            let put = at.filter(|_| has_released && !gone);
             self.placed = put.map(let_go);
             match (put, self.seat) {
                 (Some(_), Seat::Kept) => self.forget_disturbance(put),
@@ -315,7 +315,7 @@ impl HeldObject {
         let Some(held) = self.held else { return false };
         let (gripper, memory) = (EmoveGripper::of(held.gripper), inputs.memory);
         let around = gripper.felt(memory) != Felt::Nothing && gripper.presses(memory);
-        self.is_letting_go(at_place) || (!around && !grippers.are_moving(inputs.tick, memory))
+        self.is_releasing(at_place) || (!around && !grippers.are_moving(inputs.tick, memory))
     }
 
     /// In 0.01 in. An unknown object may be wider than the command's: the fingers open from their present opening.

@@ -45,7 +45,7 @@ pub const fn robot_at(command: &EmoveCommand, gone_to: GoneTo, pose: Pose) -> Ro
 
 /// The operator has the robot. Its place matters again when the operator gives it back.
 #[must_use]
-pub fn is_led(memory: &CommonMemory) -> bool {
+pub fn is_moved_by_hand(memory: &CommonMemory) -> bool {
     memory.prim.status.report == PrimReport::JoystickOn
 }
 

@@ -148,8 +148,8 @@ impl State {
         self.held.holding(self.exchange.is_misread(memory), memory)
     }
 
-    pub(super) fn is_letting_go(&self) -> bool {
-        self.held.is_letting_go(self.localization.place().is_some())
+    pub(super) fn is_releasing(&self) -> bool {
+        self.held.is_releasing(self.localization.place().is_some())
     }
 
     pub(super) fn place_knowledge(&self, inputs: &EmoveInputs<'_>) -> PlaceKnowledge {
@@ -225,7 +225,7 @@ impl State {
     fn opening(&self, gripper: Lower, inputs: &EmoveInputs<'_>) -> EmoveOpening {
         match self.motion.opening() {
             None => EmoveOpening::Free,
-            Some(_) if self.is_letting_go() => EmoveOpening::Free,
+            Some(_) if self.is_releasing() => EmoveOpening::Free,
             Some((_, true)) => EmoveOpening::Sent,
             Some((opening, false)) if gripper == Lower::Done && stands_at(opening, inputs.memory) => {
                 EmoveOpening::Reached

@@ -94,7 +94,7 @@ impl Senses<'_> {
     /// The release of an object at the place of the robot.
     #[must_use]
     pub fn release(&self) -> ReleaseWork {
-        if self.state.is_letting_go() { ReleaseWork::UnderWay } else { ReleaseWork::None }
+        if self.state.is_releasing() { ReleaseWork::UnderWay } else { ReleaseWork::None }
     }
 
     #[must_use]

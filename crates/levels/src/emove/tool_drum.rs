@@ -26,7 +26,7 @@ use super::{
     EmoveInputs,
     localization::{ASIDE_INCHES, LOST_RADIANS},
     motion::relative::Relative,
-    robot_place::{base, commanded_pose, is_led, near, present_frame, robot_at},
+    robot_place::{base, commanded_pose, is_moved_by_hand, near, present_frame, robot_at},
     tables::{
         AtDrum, Bias,
         drum::{AtTheDrum, Belief, EmoveTool, drum},
@@ -244,7 +244,7 @@ impl ToolDrum {
         execution.rows.beside(&decision.of(number::DRUM));
         match decision.action {
             Belief::Keep => None,
-            Belief::Leave if is_led(inputs.memory) => None,
+            Belief::Leave if is_moved_by_hand(inputs.memory) => None,
             Belief::Leave => {
                 self.half_way = None;
                 None

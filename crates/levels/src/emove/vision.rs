@@ -22,7 +22,7 @@ use taskdata::files::{MovtabId, PoseId, TaskData, TrajParaId, VisionPara};
 use super::{
     EmoveInputs,
     motion::route::{EmoveGoal, Planning},
-    robot_place::{is_led, may_push, near, present_frame},
+    robot_place::{is_moved_by_hand, may_push, near, present_frame},
     tables::{Action, EmoveReach, Sight, Tries, VisionAnswer},
 };
 
@@ -187,7 +187,7 @@ impl EmoveVision {
     /// after manual motion near the object, because the fingers may have pushed it.
     pub(super) fn sense(&mut self, memory: &CommonMemory) {
         let may_touch = |located: &Located| may_push(&located.pose, memory);
-        let is_pushed = is_led(memory) && self.located.as_ref().is_some_and(may_touch);
+        let is_pushed = is_moved_by_hand(memory) && self.located.as_ref().is_some_and(may_touch);
         if is_pushed || memory.prim.status.report == PrimReport::T3LinkOff {
             self.located = None;
         }

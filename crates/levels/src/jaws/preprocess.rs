@@ -11,7 +11,7 @@ use super::{
     tables::{
         Addressee, Attachment, JawsMotion, Request, Situation, Size, StateVariables, Stop,
         presence::{Closing, JawReading, JawTravel, Settling, presence},
-        valves::Mated,
+        valves::AttachedGripper,
     },
 };
 
@@ -138,10 +138,14 @@ fn gripper(quick_change: &QuickChangeSensors, parameters: &Parameters) -> Attach
     }
 }
 
-fn mated(quick_change: &QuickChangeSensors, parameters: &Parameters) -> Mated {
+fn mated(quick_change: &QuickChangeSensors, parameters: &Parameters) -> AttachedGripper {
     let id = quick_change.end_effector_id;
     let is_other = matches!(id, 1..=3) && id != parameters.end_effector_id;
-    if !quick_change.locked || quick_change.unlocked || is_other { Mated::Gone } else { Mated::Possible }
+    if !quick_change.locked || quick_change.unlocked || is_other {
+        AttachedGripper::Gone
+    } else {
+        AttachedGripper::Possible
+    }
 }
 
 fn addressee(command: &JawsCommand, parameters: &Parameters) -> Addressee {

@@ -30,7 +30,7 @@ use crate::{execution::Asked, halt::Above, places::pose_of};
 /// Consecutive ticks at the goal until the robot is at rest (docs/design/motion.md "Rest").
 const SETTLED: u32 = 3;
 /// 2 s, in which the robot must rest after the last point (docs/design/motion.md "Rest").
-const PATIENCE: u32 = 50;
+const REST_TICKS: u32 = 50;
 const AT_GOAL_INCHES: f64 = 0.02; // tolerance of the goal; greatest motion per tick at rest
 const AT_GOAL_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0; // 0.1 degree
 
@@ -207,7 +207,7 @@ impl Standstill {
     const fn rest(&self, ticks: u32) -> PrimRest {
         if ticks >= SETTLED {
             PrimRest::Arrived
-        } else if self.finished >= PATIENCE {
+        } else if self.finished >= REST_TICKS {
             PrimRest::Late
         } else {
             PrimRest::Settling

@@ -37,7 +37,7 @@ impl State {
             T3iIntake::Keep | T3iIntake::Ignore => {}
             T3iIntake::Restart => {
                 self.empty();
-                self.host.forgive();
+                self.host.clear_fault();
                 self.left = None;
             }
             T3iIntake::Pause | T3iIntake::Refuse => self.empty(),

@@ -1,6 +1,6 @@
 use depc::{
     Plate,
-    host::{HostEvent, PATIENCE_TICKS},
+    host::{HostEvent, SILENCE_LIMIT_TICKS},
     step::{Position, Step, step},
     track,
 };
@@ -88,7 +88,7 @@ impl State {
     /// The queue is emptied when the link is lost.
     fn receive_bytes<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> (HostEvent, Reported) {
         let devices = &inputs.external.devices;
-        self.host.set_patience(devices.link_patience.unwrap_or(PATIENCE_TICKS));
+        self.host.set_silence_limit(devices.link_patience.unwrap_or(SILENCE_LIMIT_TICKS));
         // First: a port that has taken part of a frame is not ready either, and this fault is more specific.
         let torn = if devices.link_unsent { self.host.unsent() } else { HostEvent::None };
         let event = self.host.receive(&devices.link_rx, devices.link_ready).max(torn);

@@ -26,7 +26,7 @@ use super::{
     tables::{
         DataBase, Update,
         item::{Carrying, Notice, Released, Taken, Taking, TaskFollowing, follow, take},
-        load::{Carry, EndedCommand, NotedObject, Occasion, PickUp, TakeOrder, carry, pick_up},
+        load::{Carry, EndedCommand, LoadEvent, NotedObject, PickUp, TakeOrder, carry, pick_up},
         pending::{Change, Event, Pending, QueueChange, Unsent, queue, update},
     },
 };
@@ -206,7 +206,7 @@ impl DataSystem {
     }
 
     /// Consult CARRY about the object of a command that ends or sends its update.
-    pub fn carry(&mut self, occasion: Occasion, plan: &Plan, held: Held) {
+    pub fn carry(&mut self, occasion: LoadEvent, plan: &Plan, held: Held) {
         let load = EndedCommand {
             occasion,
             verb: plan.verb,
@@ -231,7 +231,7 @@ impl DataSystem {
 
     /// REPORT-ITEM (IX.2): send the place of a command's object. The update is pending until it is accepted.
     pub fn report_item(&mut self, plan: &Plan, held: Held, tick: Tick, outputs: &mut TaskOutputs) {
-        self.carry(Occasion::Update, plan, held);
+        self.carry(LoadEvent::Update, plan, held);
         let (position, sector) = match plan.destination.site() {
             Some(site) if held != Held::Right => (site.location, site.sector),
             _ => (Name10::clipped(IN_HAND), None),

@@ -9,7 +9,7 @@ use rcs_core::{
 use taskdata::files::{EndEffId, TaskData};
 
 use super::tables::{
-    Destination, SiteData, TaskRegrip, ToolData, WayOut,
+    Destination, DrumDeparture, SiteData, TaskRegrip, ToolData,
     item::{Takes, TaskOrigin},
 };
 use crate::places::{Missing, is_in_mbd, named};
@@ -121,7 +121,7 @@ pub struct Found {
     pub missing: Missing,     // missing data of the object, else of a location
     pub gripper: TaskGripper, // number of the gripper for the object
     pub regrip: TaskRegrip,
-    pub way_out: WayOut, // trajectory from the tool drum to the end-at location
+    pub way_out: DrumDeparture, // trajectory from the tool drum to the end-at location
 }
 
 impl TaskVerb {
@@ -190,17 +190,17 @@ impl Plan {
     }
 
     /// Only a command that ends at the drum needs a trajectory out of it.
-    fn way_out(&self, data: &TaskData<'_>) -> WayOut {
+    fn way_out(&self, data: &TaskData<'_>) -> DrumDeparture {
         let leaves = matches!(self.verb, TaskVerb::ReleaseTool | TaskVerb::RemoveTool);
-        let Some(end_at) = self.end_at.location.filter(|_| leaves) else { return WayOut::Leads };
+        let Some(end_at) = self.end_at.location.filter(|_| leaves) else { return DrumDeparture::Leads };
         let Some(drum) = data.place_named::<10, 16>(&Name10::clipped(named::TOOL_TRNS), None) else {
-            return WayOut::Leads;
+            return DrumDeparture::Leads;
         };
         let to = end_at.site.place();
         if drum.has_location_of(&to) || data.trajectory(&drum, &to).is_some() {
-            WayOut::Leads
+            DrumDeparture::Leads
         } else {
-            WayOut::NoTrajectory
+            DrumDeparture::NoTrajectory
         }
     }
 

@@ -13,7 +13,7 @@ use super::{
     ledger::opened,
     plan::{Plan, PlanSite, TaskVerb},
     state::State,
-    tables::{Action, StateVariables, Takeover, TaskRecipient, joystick::Control, load::Occasion},
+    tables::{Action, StateVariables, Takeover, TaskRecipient, joystick::Control, load::LoadEvent},
 };
 use crate::{
     execution::{Outcome, Report},
@@ -123,7 +123,7 @@ impl State {
     fn finish(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
         let plan = self.plan;
         let held = Held::of(inputs.memory.subtask.status.held, plan.object);
-        self.data_system.carry(Occasion::Finish, &plan, held);
+        self.data_system.carry(LoadEvent::Finish, &plan, held);
         if self.is_in_ledger(outputs) {
             outputs.ledger = None;
             self.data_system.updates.taking = None;

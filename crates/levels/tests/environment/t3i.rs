@@ -32,7 +32,7 @@ pub struct ModelT3i {
     pub held: bool,           // T3I is held; its last outputs are republished
     pub deaf: bool,           // T3I reads no command, and continues with the last one
     pub left: bool,           // the robot has left its path
-    pub astray: bool,         // the robot is off its path again after each RESTART
+    pub misplaced: bool,      // the robot is off its path again after each RESTART
 }
 
 impl ModelT3i {
@@ -51,7 +51,7 @@ impl ModelT3i {
             match command.command {
                 T3iVerb::Restart => {
                     (self.fault, self.running, self.starting) = (LinkFault::None, false, Some(7));
-                    self.left = self.astray;
+                    self.left = self.misplaced;
                     self.queue.clear();
                 }
                 T3iVerb::Point if self.fault != LinkFault::None || self.left => {}

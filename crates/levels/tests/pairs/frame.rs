@@ -11,7 +11,7 @@ use taskdata::files::TaskData;
 
 use crate::{
     data::data,
-    search::{Mishap, World, Wrong},
+    search::{DeliveryFault, World, Wrong},
 };
 
 pub type Data = TaskData<'static>;
@@ -64,7 +64,7 @@ pub trait Scene: Clone {
 
     const LONG: u64;
     /// Events that can happen to the processes.
-    const MISHAPS: &'static [Mishap] = Mishap::RESTARTS;
+    const MISHAPS: &'static [DeliveryFault] = DeliveryFault::RESTARTS;
     /// A command can arrive in the tick of a mishap.
     const COMMANDS_IN_MISHAPS: bool = false;
 
@@ -117,7 +117,7 @@ impl<Does> Choice<Does> {
 pub struct Event<Does> {
     pub told: Option<usize>, // index of the arriving command
     pub does: Does,
-    pub mishap: Mishap,
+    pub mishap: DeliveryFault,
     pub mishaps: u8,
     pub long: bool, // after a long time without other events
 }
@@ -170,10 +170,10 @@ impl<S: Scene> World for Pair<S> {
 
     fn events(&self) -> Vec<(Self::Event, bool)> {
         let (choices, mut events) = (S::choices(self), Vec::new());
-        for mishap in Mishap::choices(self.mishaps, S::MISHAPS) {
+        for mishap in DeliveryFault::choices(self.mishaps, S::MISHAPS) {
             for told in self.told() {
                 for &Choice { does, prompt, mishaps, short, long, quiet: only_quiet } in &choices {
-                    let mishaps = mishaps + u8::from(mishap != Mishap::None);
+                    let mishaps = mishaps + u8::from(mishap != DeliveryFault::None);
                     if mishaps > self.mishaps || (mishaps > 0 && told.is_some() && !S::COMMANDS_IN_MISHAPS) {
                         continue;
                     }
@@ -204,15 +204,15 @@ impl<S: Scene> World for Pair<S> {
         self.tick = if event.long { Tick(self.tick.0 + S::LONG) } else { self.tick.next() };
         let (mut upper, mut lower) = (self.upper.clone(), self.lower.clone());
         match event.mishap {
-            Mishap::RestartUpper => upper.restart(),
-            Mishap::RestartLower => lower.restart(),
-            Mishap::None | Mishap::SilentLower | Mishap::Slip => {}
+            DeliveryFault::RestartUpper => upper.restart(),
+            DeliveryFault::RestartLower => lower.restart(),
+            DeliveryFault::None | DeliveryFault::SilentLower | DeliveryFault::Slip => {}
         }
         let (memory, external) = S::inputs(self);
         let data = data();
         let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &data };
         upper.step(&inputs);
-        if event.mishap != Mishap::SilentLower {
+        if event.mishap != DeliveryFault::SilentLower {
             lower.step(&inputs);
         }
         S::act(self, &event, &memory)?;

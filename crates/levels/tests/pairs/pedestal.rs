@@ -16,7 +16,7 @@ use crate::{
     frame::{self, Choice, Event, Half, Scene},
     hand,
     image::{Image, rebase, rebase_echoes},
-    search::{Mishap, Wrong},
+    search::{DeliveryFault, Wrong},
 };
 
 /// Ticks until a motor that takes no order is reported silent.
@@ -153,7 +153,8 @@ impl Scene for Around {
     type Does = (HandDoes, MotorDoes);
     /// Longer than the time limit of the table's commands.
     const LONG: u64 = 2000;
-    const MISHAPS: &'static [Mishap] = &[Mishap::RestartUpper, Mishap::RestartLower, Mishap::Slip];
+    const MISHAPS: &'static [DeliveryFault] =
+        &[DeliveryFault::RestartUpper, DeliveryFault::RestartLower, DeliveryFault::Slip];
 
     fn choices(pair: &Pair) -> Vec<Choice<Self::Does>> {
         let order = &pair.upper.out.hand;
@@ -241,7 +242,7 @@ impl Scene for Around {
         let (hand, motor) = event.does;
         pair.scene.hand_does(hand, &memory.pedestal.hand);
         pair.scene.silent = hand == HandDoes::Silent;
-        pair.scene.slipped ^= event.mishap == Mishap::Slip;
+        pair.scene.slipped ^= event.mishap == DeliveryFault::Slip;
         pair.scene.motor_does(motor, &memory.table.motor);
         Ok(())
     }

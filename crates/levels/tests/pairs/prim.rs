@@ -30,7 +30,7 @@ use rcs_core::tick::Tick;
 use crate::{
     data::{data, emove_command, place, pose_of_point},
     holster,
-    search::{Mishap, World, Wrong, resumed},
+    search::{DeliveryFault, World, Wrong, resumed},
 };
 use change::Change;
 pub use tool::DRUM;
@@ -63,7 +63,7 @@ pub enum Link {
     /// The robot is off the commanded pose: after RESTART T3 Interface detects it.
     Aside,
     /// It requests no point, and E-move or Prim is restarted.
-    Restart(Mishap),
+    Restart(DeliveryFault),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -286,8 +286,8 @@ impl Pair {
 
     fn tick(&mut self, link: Link, happens: Happens) -> Result<(), Wrong> {
         self.tick = self.tick.next();
-        let mut upper: Emove = resumed(self.emove, link == Link::Restart(Mishap::RestartUpper));
-        let mut lower: Prim = resumed(self.prim, link == Link::Restart(Mishap::RestartLower));
+        let mut upper: Emove = resumed(self.emove, link == Link::Restart(DeliveryFault::RestartUpper));
+        let mut lower: Prim = resumed(self.prim, link == Link::Restart(DeliveryFault::RestartLower));
         let (memory, external) = self.inputs();
         let data = data();
         let inputs = Inputs { tick: self.tick, memory: &memory, external: &external, data: &data };
@@ -331,7 +331,7 @@ impl World for Pair {
             ];
             links.extend(faults.map(|(fault, ready)| Link::Fails(fault, ready)));
             links.extend([Link::Silent, Link::Aside]);
-            links.extend(Mishap::RESTARTS.iter().copied().map(Link::Restart));
+            links.extend(DeliveryFault::RESTARTS.iter().copied().map(Link::Restart));
         }
         let prompt = |link: Link| link == Link::Goes && !self.awaits_arrival();
         let quiet = |link| Event { told: None, link, happens: Happens::Nothing };

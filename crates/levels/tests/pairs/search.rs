@@ -13,7 +13,7 @@ pub type Wrong = &'static str;
 
 /// Disturbance of a tick, in addition to failing orders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mishap {
+pub enum DeliveryFault {
     None,
     RestartUpper, // the upper process restarts
     RestartLower,
@@ -22,7 +22,7 @@ pub enum Mishap {
     Slip,
 }
 
-impl Mishap {
+impl DeliveryFault {
     pub const RESTARTS: &[Self] = &[Self::RestartUpper, Self::RestartLower];
 
     /// No disturbance, and each of `some` if any is left.

@@ -14,7 +14,7 @@ use crate::{
     image::Image,
     parts_gripper::{GripDoes, PartsGripper},
     robot::{PrimDoes, Robot},
-    search::{Mishap, Wrong},
+    search::{DeliveryFault, Wrong},
 };
 use interfaces::{
     ChangingPose, CommonMemory, ExternalInputs, StatusReport,
@@ -103,7 +103,8 @@ impl Scene for Around {
     type Command = SubtaskCommand;
     type Does = Does;
     const LONG: u64 = 2 * LIMIT;
-    const MISHAPS: &'static [Mishap] = &[Mishap::RestartUpper, Mishap::RestartLower, Mishap::SilentLower];
+    const MISHAPS: &'static [DeliveryFault] =
+        &[DeliveryFault::RestartUpper, DeliveryFault::RestartLower, DeliveryFault::SilentLower];
 
     fn choices(pair: &Pair) -> Vec<Choice<Does>> {
         let moving = pair.scene.robot.is_busy(&pair.lower.out.prim);
@@ -171,7 +172,7 @@ impl Scene for Around {
     }
 
     fn act(pair: &mut Pair, event: &Event<Does>, memory: &CommonMemory) -> Result<(), Wrong> {
-        pair.scene.silent = event.mishap == Mishap::SilentLower;
+        pair.scene.silent = event.mishap == DeliveryFault::SilentLower;
         let full = pair.scene.grip.full;
         pair.scene.robot.take(memory)?;
         pair.scene.robot.does(event.does.prim);

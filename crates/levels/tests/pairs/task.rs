@@ -24,7 +24,7 @@ use crate::{
     emove_orders as emove,
     frame::{self, Choice, Event, Half, Scene},
     image::{Image, rebase, rebase_echoes},
-    search::{Mishap, Wrong},
+    search::{DeliveryFault, Wrong},
 };
 
 const REPLACED: u8 = 6; // ticks for which E-move continues an order of a replaced command
@@ -231,7 +231,7 @@ impl Scene for Around {
     }
 
     fn begin(pair: &mut Pair, event: &Event<Does>) {
-        pair.scene.own &= event.mishap == Mishap::None;
+        pair.scene.own &= event.mishap == DeliveryFault::None;
     }
 
     fn inputs(pair: &Pair) -> (CommonMemory, ExternalInputs) {
@@ -268,11 +268,11 @@ impl Scene for Around {
                 pair.scene.answered = command;
             }
         }
-        let goes_on = pair.scene.emove.report == StatusReport::Executing
+        let has_next = pair.scene.emove.report == StatusReport::Executing
             && pair.scene.emove.echo == memory.subtask.emove.number
             && memory.subtask.emove.command != EmoveVerb::Pause;
         pair.scene.replaced =
-            if goes_on && !pair.scene.own && !pair.scene.box_on { pair.scene.replaced + 1 } else { 0 };
+            if has_next && !pair.scene.own && !pair.scene.box_on { pair.scene.replaced + 1 } else { 0 };
         Ok(())
     }
 

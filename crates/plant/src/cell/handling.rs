@@ -23,7 +23,7 @@ use crate::{
 };
 
 const SLIP: f64 = 0.02; // least slide of a part in the fingers that is reported, in
-const JAW_PATIENCE: u32 = 50; // ticks after which the vise reports a jaw that does not move (2 s)
+const JAW_WAIT_LIMIT: u32 = 50; // ticks after which the vise reports a jaw that does not move (2 s)
 /// Greatest penetration of a part into a clamping face at which it is still between the jaws, m.
 const OUTSIDE: Real = 2e-3;
 /// A part is also in a step of the jaws if it covers this fraction of the largest area that it covers in any step.
@@ -323,7 +323,7 @@ impl Cell {
     pub(super) fn note_jaw(&mut self) {
         let stands = self.vise.moving() && self.faults.jaw_stuck();
         self.jaw_waits = if stands { self.jaw_waits + 1 } else { 0 };
-        if self.jaw_waits == JAW_PATIENCE {
+        if self.jaw_waits == JAW_WAIT_LIMIT {
             self.events.push(CellEvent::ViseStuck);
         }
     }

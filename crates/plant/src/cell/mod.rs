@@ -46,7 +46,7 @@ use crate::{
     convert::{GRAVITY, to_frame, to_pose},
     description::{Actuators, CellDescription, Points},
     drum::Drum,
-    fault::{Change, FaultPlan, Injector, Struck},
+    fault::{Change, FaultPlan, FaultResult, Injector},
     gripper::Gripper,
     joystick::Joystick,
     noise::{Noise, Stream},
@@ -282,7 +282,7 @@ impl Cell {
 
     /// Faults of the plan that have happened so far.
     #[must_use]
-    pub fn faults(&self) -> Vec<Struck> {
+    pub fn faults(&self) -> Vec<FaultResult> {
         self.faults.struck()
     }
 

@@ -18,7 +18,7 @@ pub(crate) enum Machine<'c> {
 }
 
 impl CellDescription {
-    /// Check that all names in a workstation action are in the cell. On error: [`WorkstationError::blames`] returns the
+    /// Check that all names in a workstation action are in the cell. On error: [`WorkstationError::suspects`] returns the
     /// wrong word.
     pub fn admits(&self, action: &WorkstationAction) -> Result<(), WorkstationError> {
         match action {
@@ -128,7 +128,7 @@ impl PartType {
 impl WorkstationError {
     /// The wrong word of an action, and the nearest known one; `None` if no single word is wrong.
     #[must_use]
-    pub fn blames(&self) -> Option<(String, Option<&str>)> {
+    pub fn suspects(&self) -> Option<(String, Option<&str>)> {
         let near = |word: &String, known: &'_ [String]| -> Option<usize> {
             let name = nearest(word, known.iter().map(String::as_str))?;
             known.iter().position(|one| one == name)
@@ -198,7 +198,7 @@ mod tests {
         let cell = cell();
         let blamed = |action: WorkstationAction| {
             let error = cell.admits(&action).expect_err("it names what there is not");
-            error.blames().map(|(word, near)| (word, near.unwrap_or("-").to_owned()))
+            error.suspects().map(|(word, near)| (word, near.unwrap_or("-").to_owned()))
         };
         let is = |word: &str, near: &str| Some((word.to_owned(), near.to_owned()));
         assert_eq!(blamed(place("LINKBAR1_HB", "UNIT_1", 4)), is("LINKBAR1_HB", "LINKBAR1_BH"));
@@ -214,6 +214,6 @@ mod tests {
         let tool = WorkstationAction::DrumTool { part: "SHAFT".into() };
         assert_eq!(blamed(tool), is("SHAFT", "-"));
         let error = cell.has_vise_at("TABLE").expect_err("it is a table");
-        assert_eq!(error.blames(), Some(("TABLE".into(), Some("PFIXTURE"))));
+        assert_eq!(error.suspects(), Some(("TABLE".into(), Some("PFIXTURE"))));
     }
 }

@@ -25,7 +25,7 @@ const SLACK: Real = 0.001; // least distance of the fingers from all bodies in a
 /// Distance from hand, fingers and held part beyond which no body is within reach in a tick, m.
 const REACH: Real = 0.5;
 
-struct Stride {
+struct TickSteps {
     most: u32,                            // greatest number of sub-steps that the physics takes at once
     around: Vec<Aabb>,                    // bounding boxes of all bodies that the hand may approach
     carried: Vec<(ColliderHandle, Pose)>, // colliders of hand and held part, and their poses in the hand
@@ -49,7 +49,7 @@ impl Cell {
         &mut self,
         outputs: &DeviceOutputs,
         near: &[Body],
-        stride: &mut Stride,
+        stride: &mut TickSteps,
         left: u32,
     ) -> u32 {
         let substep = TICK_S / f64::from(self.description.physics.substeps);
@@ -77,14 +77,14 @@ impl Cell {
         taken
     }
 
-    fn stride(&self, outputs: &DeviceOutputs) -> Stride {
+    fn stride(&self, outputs: &DeviceOutputs) -> TickSteps {
         let most = self.most_at_once(outputs);
         let hand = self.changer.mated().filter(|_| most > 1);
         let carried = hand.map_or_else(Vec::new, |hand| self.carried_by(hand));
         let around = self.around(&carried);
         let flow = hand.map_or(0.0, |hand| hand.supply(&self.description, outputs).flow.abs());
         let near = NEAR.max(SLACK + metres(flow / 2.0 * TICK_S));
-        Stride { most, around, carried, tool: self.t3.arm().tool(), near }
+        TickSteps { most, around, carried, tool: self.t3.arm().tool(), near }
     }
 
     fn most_at_once(&self, outputs: &DeviceOutputs) -> u32 {
@@ -152,7 +152,7 @@ impl Cell {
         others.map(|(_, collider)| collider.compute_aabb()).filter(|other| other.intersects(&reach)).collect()
     }
 
-    fn is_clear(&self, stride: &mut Stride) -> bool {
+    fn is_clear(&self, stride: &mut TickSteps) -> bool {
         let tool = self.t3.arm().tool();
         let travel = metres((tool.position - stride.tool.position).norm());
         stride.tool = tool;

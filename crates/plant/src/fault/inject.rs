@@ -11,7 +11,7 @@ use rcs_core::tick::TICK_S;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Disorder, Fault, FaultPlan, Mishap, What,
+    DeliveryFault, Disorder, Fault, FaultPlan, What,
     valve::{cut_air, hold_ring},
 };
 use crate::{description::CellDescription, noise::Noise, sensor::DelayLine};
@@ -46,7 +46,7 @@ struct Running {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Struck {
+pub struct FaultResult {
     /// Its number in the file, from 1.
     pub number: usize,
     pub text: String,
@@ -216,12 +216,12 @@ impl Injector {
                 continue;
             }
             match mishap {
-                Mishap::Missing => delivery.missing = true,
-                Mishap::Misplaced { x, y } => {
+                DeliveryFault::Missing => delivery.missing = true,
+                DeliveryFault::Misplaced { x, y } => {
                     delivery.aside = [delivery.aside[0] + x, delivery.aside[1] + y];
                 }
-                Mishap::Turned(angle) => delivery.angle += angle,
-                Mishap::WrongPart(other) => delivery.instead = Some(other.clone()),
+                DeliveryFault::Turned(angle) => delivery.angle += angle,
+                DeliveryFault::WrongPart(other) => delivery.instead = Some(other.clone()),
             }
             changes.push(running.note(tick, true));
             running.last = tick;
@@ -237,9 +237,9 @@ impl Injector {
 
     /// The faults that have happened so far, in the order of the file.
     #[must_use]
-    pub fn struck(&self) -> Vec<Struck> {
+    pub fn struck(&self) -> Vec<FaultResult> {
         let struck = self.faults.iter().filter(|running| running.times > 0);
-        let told = struck.map(|running| Struck {
+        let told = struck.map(|running| FaultResult {
             number: running.fault.number,
             text: running.fault.what.to_string(),
             times: running.times,
@@ -407,9 +407,9 @@ mod tests {
         let bar = || Some("BAR".to_owned());
         let late = When { from: 10, ..When::ALWAYS };
         let mut injector = injector(vec![
-            (What::Delivery(bar(), Mishap::Misplaced { x: 0.5, y: -1.0 }), When::ALWAYS),
-            (What::Delivery(None, Mishap::Turned(30.0)), When::ALWAYS),
-            (What::Delivery(None, Mishap::Missing), late),
+            (What::Delivery(bar(), DeliveryFault::Misplaced { x: 0.5, y: -1.0 }), When::ALWAYS),
+            (What::Delivery(None, DeliveryFault::Turned(30.0)), When::ALWAYS),
+            (What::Delivery(None, DeliveryFault::Missing), late),
         ]);
         let (delivery, changes) = injector.delivery("BAR");
         let expected = Delivery { missing: false, instead: None, aside: [0.5, -1.0], angle: 30.0 };

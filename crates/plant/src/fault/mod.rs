@@ -14,7 +14,7 @@ use rcs_core::tick::TICK_S;
 use serde::{Deserialize, Serialize};
 
 pub(crate) use inject::Change;
-pub use inject::{Delivery, Injector, Struck};
+pub use inject::{Delivery, FaultResult, Injector};
 use interfaces::point::{Input, Output};
 
 use crate::description::CellDescription;
@@ -67,7 +67,7 @@ pub enum What {
     /// A device of the field I/O has no connection.
     FieldCut(String),
     /// Deliveries to a tray go wrong: all, or those of one part.
-    Delivery(Option<String>, Mishap),
+    Delivery(Option<String>, DeliveryFault),
     /// The stand of the pedestal is not on its mark on the floor (II.1.2.3): inches in x and y, degrees.
     PedestalMoved {
         x: f64,     // along world X, in
@@ -94,7 +94,7 @@ pub enum Disorder {
 }
 
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub enum Mishap {
+pub enum DeliveryFault {
     Missing,
     /// The part lies off its place: offset along world X and Y, in.
     Misplaced {
@@ -169,12 +169,12 @@ impl fmt::Display for What {
             Self::Delivery(object, mishap) => {
                 let object = object.as_deref().unwrap_or("what is delivered");
                 match mishap {
-                    Mishap::Missing => write!(f, "{object} does not come"),
-                    Mishap::Misplaced { x, y } => {
+                    DeliveryFault::Missing => write!(f, "{object} does not come"),
+                    DeliveryFault::Misplaced { x, y } => {
                         write!(f, "{object} lies {}, {} beside its place", Length(*x), Length(*y))
                     }
-                    Mishap::Turned(angle) => write!(f, "{object} is turned by {angle} degrees"),
-                    Mishap::WrongPart(part) => write!(f, "{part} comes instead of {object}"),
+                    DeliveryFault::Turned(angle) => write!(f, "{object} is turned by {angle} degrees"),
+                    DeliveryFault::WrongPart(part) => write!(f, "{part} comes instead of {object}"),
                 }
             }
             Self::PedestalMoved { x, y, angle } => {

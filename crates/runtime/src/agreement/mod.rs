@@ -59,10 +59,10 @@ pub fn of_job(job: &Job, source: &Source, cell: &CellDescription, store: &Store,
             }
             continue;
         };
-        let blames = error.blames();
-        let word = blames.as_ref().map(|(word, _)| word.as_str());
+        let suspects = error.suspects();
+        let word = suspects.as_ref().map(|(word, _)| word.as_str());
         problems.error("job.cell", place(job.source(), line, word), error.to_string());
-        match blames {
+        match suspects {
             Some((_, Some(near))) => problems.nearest("one", near),
             _ => problems.help(format!("what the cell has is in {}", path.display())),
         }

@@ -4,7 +4,7 @@ use executive::boards::Board;
 use taskdata::load::{BlockNumber, Diagnostics};
 
 /// Time limit for the boards' check of a load.
-pub const PATIENCE: Duration = Duration::from_secs(10);
+pub const LOAD_LIMIT: Duration = Duration::from_secs(10);
 
 #[derive(Debug)]
 pub enum LoadError {
@@ -49,7 +49,7 @@ impl fmt::Display for LoadError {
             Self::Late => write!(
                 f,
                 "not all boards have checked it within {} s; nothing has changed",
-                PATIENCE.as_secs()
+                LOAD_LIMIT.as_secs()
             ),
             Self::Differs(board) => {
                 write!(

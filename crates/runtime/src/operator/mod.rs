@@ -47,7 +47,7 @@ use taskdata::load::{BlockNumber, Store, job::Workstation};
 
 use self::{hold::Ended, request::Request, terminals::Terminals};
 pub use self::{
-    obstacles::is_led,
+    obstacles::is_moved_by_hand,
     request::first_words,
     source::{Input, Inputs, WORKSTATION},
 };
@@ -199,10 +199,10 @@ impl Operator {
             Event::Silent => Ok(self.end_hold(who, around)),
             Event::Disconnected => self.disconnected(who, around),
             Event::Line(line) => {
-                Request::read(line, around.store).and_then(|request| self.obey(who, request, around))
+                Request::read(line, around.store).and_then(|request| self.run_line(who, request, around))
             }
             Event::Late(late, line) => Request::read(line, around.store).and_then(|request| {
-                if request.is_stop() { self.obey(who, request, around) } else { Err(late.to_string()) }
+                if request.is_stop() { self.run_line(who, request, around) } else { Err(late.to_string()) }
             }),
         }
     }
@@ -264,7 +264,7 @@ impl Operator {
         }
     }
 
-    fn obey(&mut self, who: &str, request: Request, around: &mut Around<'_>) -> Result<String, String> {
+    fn run_line(&mut self, who: &str, request: Request, around: &mut Around<'_>) -> Result<String, String> {
         if !request.is_stop() {
             self.take_command(who)?;
             if around.loading && request.is_of_the_job() {
@@ -275,7 +275,8 @@ impl Operator {
             if self.awaiting.is_some() {
                 return Err("a request before it waits for the robot: ask again".to_owned());
             }
-            if request.needs_the_robot() && !self.hand.is_held() && obstacles::is_led(around.memory) {
+            if request.needs_the_robot() && !self.hand.is_held() && obstacles::is_moved_by_hand(around.memory)
+            {
                 self.later = Some(Later::Await);
                 return Err(obstacles::LED.to_owned());
             }

@@ -44,7 +44,7 @@ pub const LED: &str = "the robot is still coming to rest after its motion by han
 
 /// True while a process reports that the joystick box controls the robot. Prim reads the box, and each report
 /// rises one process per tick: a command that Task receives meanwhile fails.
-pub fn is_led(memory: &CommonMemory) -> bool {
+pub fn is_moved_by_hand(memory: &CommonMemory) -> bool {
     memory.prim.status.report == PrimReport::JoystickOn
         || [memory.emove.status.report, memory.subtask.status.report].contains(&StatusReport::JoystickOn)
         || memory.task.status.report == HwsReport::JoystickOn

@@ -2,7 +2,7 @@ use std::fmt;
 
 use closed_loop::workstation::Emergency;
 use neighbours::data_system::Item;
-use plant::fault::Struck;
+use plant::fault::FaultResult;
 use rcs_core::tick::Tick;
 use serde::Serialize;
 
@@ -17,8 +17,8 @@ pub struct CellFaultResult {
     pub last: u64,  // last tick in which it was active
 }
 
-impl From<Struck> for CellFaultResult {
-    fn from(Struck { number, text, times, first, last }: Struck) -> Self {
+impl From<FaultResult> for CellFaultResult {
+    fn from(FaultResult { number, text, times, first, last }: FaultResult) -> Self {
         Self { number, text, times, first, last }
     }
 }

@@ -16,7 +16,7 @@ use taskdata::load::{
 use super::Run;
 use crate::{
     judge::check_job,
-    load::{Answer, Asker, LoadError},
+    load::{Answer, LoadError, LoadSource},
     operator::{A_TICK, Around, Input, Later, WORKSTATION},
 };
 
@@ -86,7 +86,7 @@ impl Run {
                 (Some(_), Some(why)) => Err(why.to_owned()),
                 (Some(Later::Play(job)), None) => self.play(tick, &job),
                 (Some(Later::Load(block)), None) => {
-                    if let Some(answer) = self.load(block, Asker::Operator(input)) {
+                    if let Some(answer) = self.load(block, LoadSource::Operator(input)) {
                         self.loaded(tick, answer);
                     }
                     continue;
@@ -100,7 +100,7 @@ impl Run {
     /// Execute the load that the workstation controller has requested. It takes effect in the next tick.
     pub(super) fn load_for_workstation(&mut self, tick: Tick) {
         let Some((block, line)) = self.neighbours.load_asked() else { return };
-        let asker = Asker::Workstation(line);
+        let asker = LoadSource::Workstation(line);
         let answer = match self.asked.recorded_refusal() {
             Some(why) => Some((asker, Err(LoadError::Recorded(why)))),
             None => self.load(block, asker),
@@ -113,10 +113,10 @@ impl Run {
     /// Answer a load and log it.
     fn loaded(&mut self, tick: Tick, (asker, verdict): Answer) {
         match asker {
-            Asker::Operator(input) => {
+            LoadSource::Operator(input) => {
                 self.settle(tick.next(), input, verdict.map_err(|error| error.to_string()));
             }
-            Asker::Workstation(line) => {
+            LoadSource::Workstation(line) => {
                 let verdict = verdict.map_err(|error| error.in_line());
                 if let Some(log) = &mut self.log {
                     log.operator(OperatorLine {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use closed_loop::{ClosedLoop, account::Alarms, chain::History, rest::RestWatch};
-use depc::host::{PATIENCE_TICKS, RESTART_TICKS};
+use depc::host::{RESTART_TICKS, SILENCE_LIMIT_TICKS};
 use diagnostics::FAULTS;
 use executive::{
     memory::{Announced, Mirror, Publisher, RunName, SET_UP_LIMIT, SharedMemoryError, within_limit},
@@ -33,13 +33,13 @@ use crate::{
 };
 
 /// Ticks to wait for the first answer of a robot controller at a port, which may be powered up after the run has begun.
-fn first_patience(config: &RunConfig) -> Option<u16> {
+fn first_silence_limit(config: &RunConfig) -> Option<u16> {
     if config.robot.kind == RobotKind::Sim {
         return None;
     }
     let wait = config.wait.saturating_mul(RESTART_TICKS.into());
-    let patience = config.robot.patience().unwrap_or(PATIENCE_TICKS);
-    Some(u16::try_from(wait).unwrap_or(u16::MAX).max(patience))
+    let silence_limit = config.robot.silence_limit().unwrap_or(SILENCE_LIMIT_TICKS);
+    Some(u16::try_from(wait).unwrap_or(u16::MAX).max(silence_limit))
 }
 
 /// Announce a run that has a name, before it uses a file of its own.
@@ -164,7 +164,7 @@ impl Run {
             closed.workstation.note_hand_over();
         }
         if let Some(plan) = &line_faults {
-            closed.line_mut().suffer(plan);
+            closed.line_mut().apply_faults(plan);
         }
         let keeps_books = neighbours.data_system().is_none();
         let closed = if keeps_books { closed } else { closed.with_data_system_elsewhere() };
@@ -228,8 +228,8 @@ impl Run {
             events: Events::default(),
             rest: RestWatch::default(),
             ramp: None,
-            patience: config.robot.patience(),
-            first_patience: first_patience(&config),
+            silence_limit: config.robot.silence_limit(),
+            first_silence_limit: first_silence_limit(&config),
             trouble: None,
             remedy: None,
             job,

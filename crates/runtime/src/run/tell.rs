@@ -93,7 +93,7 @@ impl Run {
     /// Log the state of the line to the robot when it changes.
     pub(super) fn watch_link(&mut self, tick: Tick, memory: &CommonMemory) {
         if memory.t3i.status.link_running {
-            self.first_patience = None;
+            self.first_silence_limit = None;
         }
         let before = std::mem::replace(&mut self.trouble, memory.t3i.status.trouble());
         if let Some(trouble) = self.trouble.filter(|_| self.trouble != before) {

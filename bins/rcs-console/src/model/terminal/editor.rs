@@ -40,7 +40,7 @@ enum Stage {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Wish {
+pub enum EditorRequest {
     None,
     Close,
     Write,
@@ -148,28 +148,30 @@ impl Editor {
         self.stage == Stage::Diff
     }
 
-    pub fn key(&mut self, key: Key) -> Wish {
+    pub fn key(&mut self, key: Key) -> EditorRequest {
         match (self.stage, key) {
-            (Stage::Diff, Key::Enter) => return Wish::Write,
+            (Stage::Diff, Key::Enter) => return EditorRequest::Write,
             (Stage::Diff, Key::Esc) => self.stage = Stage::Text,
             (Stage::Diff, _) => {
-                return Wish::Say("Enter writes the block and loads it, Esc goes back to the text");
+                return EditorRequest::Say("Enter writes the block and loads it, Esc goes back to the text");
             }
-            (Stage::Text, Key::Esc) => return Wish::Close,
+            (Stage::Text, Key::Esc) => return EditorRequest::Close,
             (Stage::Text, Key::F2) => return self.check(),
             (Stage::Text, key) => return self.edit(key),
         }
-        Wish::None
+        EditorRequest::None
     }
 
-    fn edit(&mut self, key: Key) -> Wish {
-        let Some(line) = self.lines.get_mut(self.row) else { return Wish::None };
+    fn edit(&mut self, key: Key) -> EditorRequest {
+        let Some(line) = self.lines.get_mut(self.row) else { return EditorRequest::None };
         self.column = self.column.min(line.len());
         match key {
             Key::Char(typed) if !(' '..='~').contains(&typed) => {
-                return Wish::Say("a block has ASCII characters only");
+                return EditorRequest::Say("a block has ASCII characters only");
             }
-            Key::Char(_) if line.len() >= BLOCK_COLUMNS => return Wish::Say("a line has 64 columns"),
+            Key::Char(_) if line.len() >= BLOCK_COLUMNS => {
+                return EditorRequest::Say("a line has 64 columns");
+            }
             Key::Char(typed) => {
                 line.insert(self.column, typed);
                 self.column += 1;
@@ -185,17 +187,21 @@ impl Editor {
             Key::Up => self.row = self.row.saturating_sub(1),
             Key::Down => self.row = (self.row + 1).min(BLOCK_LINES - 1),
             Key::Enter => (self.row, self.column) = ((self.row + 1).min(BLOCK_LINES - 1), 0),
-            _ => return Wish::Say("F2 checks the block and shows the change, Esc leaves it as it was"),
+            _ => {
+                return EditorRequest::Say(
+                    "F2 checks the block and shows the change, Esc leaves it as it was",
+                );
+            }
         }
-        Wish::None
+        EditorRequest::None
     }
 
-    fn check(&mut self) -> Wish {
+    fn check(&mut self) -> EditorRequest {
         if self.changes().is_empty() {
-            return Wish::Say("nothing has changed");
+            return EditorRequest::Say("nothing has changed");
         }
         let mut sources = self.sources.clone();
-        let Some(source) = sources.get_mut(self.at) else { return Wish::None };
+        let Some(source) = sources.get_mut(self.at) else { return EditorRequest::None };
         source.text = self.text().into();
         let name = source.name.clone();
         let report = match Store::from_sources(sources) {
@@ -218,10 +224,10 @@ impl Editor {
             })
             .collect();
         if self.messages.iter().any(|message| message.is_error) {
-            return Wish::Say("with this change the data have errors: nothing is written");
+            return EditorRequest::Say("with this change the data have errors: nothing is written");
         }
         self.stage = Stage::Diff;
-        Wish::None
+        EditorRequest::None
     }
 
     /// Write the block into the file. Errors: a message with the reason. The file is then unchanged.
@@ -367,7 +373,7 @@ mod tests {
 
     fn typed(editor: &mut Editor, text: &str) {
         for sign in text.chars() {
-            assert_eq!(editor.key(Key::Char(sign)), Wish::None);
+            assert_eq!(editor.key(Key::Char(sign)), EditorRequest::None);
         }
     }
 
@@ -381,14 +387,14 @@ mod tests {
         let directory = data();
         let before = fs::read_to_string(directory.path().join("commands.blk")).unwrap();
         let mut editor = editor(directory.path(), COMMANDS);
-        assert_eq!(editor.key(Key::F2), Wish::Say("nothing has changed"));
-        (0..5).for_each(|_| assert_eq!(editor.key(Key::Down), Wish::None));
+        assert_eq!(editor.key(Key::F2), EditorRequest::Say("nothing has changed"));
+        (0..5).for_each(|_| assert_eq!(editor.key(Key::Down), EditorRequest::None));
         assert_eq!(editor.lines[5], "", "line 5 is free");
         typed(&mut editor, "== PAUSE -- +0 -- 0 +0 -- 0 -- 0");
-        assert_eq!(editor.key(Key::F2), Wish::None);
+        assert_eq!(editor.key(Key::F2), EditorRequest::None);
         let shown = screen(&editor);
         assert!(shown.contains(" + 5 == PAUSE") && shown.contains("asks for: load 16000 863"), "{shown}");
-        assert_eq!(editor.key(Key::Enter), Wish::Write);
+        assert_eq!(editor.key(Key::Enter), EditorRequest::Write);
         editor.write().unwrap();
         let after = fs::read_to_string(directory.path().join("commands.blk")).unwrap();
         let changed: Vec<_> = before.lines().zip(after.lines()).filter(|(old, new)| old != new).collect();
@@ -416,30 +422,33 @@ mod tests {
     fn errors_are_shown_at_their_lines_and_prevent_writing() {
         let directory = data();
         let mut editor = editor(directory.path(), COMMANDS);
-        (0..4).for_each(|_| assert_eq!(editor.key(Key::Down), Wish::None));
+        (0..4).for_each(|_| assert_eq!(editor.key(Key::Down), EditorRequest::None));
         typed(&mut editor, "NONSENSE ");
-        assert!(matches!(editor.key(Key::F2), Wish::Say(why) if why.contains("errors")));
+        assert!(matches!(editor.key(Key::F2), EditorRequest::Say(why) if why.contains("errors")));
         let shown = screen(&editor);
         let lines: Vec<&str> = shown.lines().collect();
         let at = lines.iter().position(|line| line.starts_with("> 4")).unwrap();
         assert!(lines[at + 1].starts_with("!!"), "{shown}");
-        assert!(matches!(editor.key(Key::Enter), Wish::None), "it is a new line, and no order to write");
-        assert_eq!(editor.key(Key::Esc), Wish::Close);
+        assert!(
+            matches!(editor.key(Key::Enter), EditorRequest::None),
+            "it is a new line, and no order to write"
+        );
+        assert_eq!(editor.key(Key::Esc), EditorRequest::Close);
     }
 
     #[test]
     fn line_has_64_columns_and_lines_can_be_inserted() {
         let directory = data();
         let mut editor = editor(directory.path(), POSES);
-        (0..15).for_each(|_| assert_eq!(editor.key(Key::Down), Wish::None));
+        (0..15).for_each(|_| assert_eq!(editor.key(Key::Down), EditorRequest::None));
         assert_eq!(editor.lines[15], "", "line 15 is free");
         typed(&mut editor, &"x".repeat(64));
-        assert!(matches!(editor.key(Key::Char('y')), Wish::Say(why) if why.contains("64 columns")));
-        assert!(matches!(editor.key(Key::Char('é')), Wish::Say(why) if why.contains("ASCII")));
-        assert_eq!(editor.key(Key::Home), Wish::None);
+        assert!(matches!(editor.key(Key::Char('y')), EditorRequest::Say(why) if why.contains("64 columns")));
+        assert!(matches!(editor.key(Key::Char('é')), EditorRequest::Say(why) if why.contains("ASCII")));
+        assert_eq!(editor.key(Key::Home), EditorRequest::None);
         assert_eq!(
             editor.key(Key::Backspace),
-            Wish::Say("F2 checks the block and shows the change, Esc leaves it as it was")
+            EditorRequest::Say("F2 checks the block and shows the change, Esc leaves it as it was")
         );
     }
 

@@ -19,7 +19,7 @@ use interfaces::{
 use taskdata::load::{BlockNumber, commands};
 
 use self::{
-    editor::{Editor, Wish},
+    editor::{Editor, EditorRequest},
     library::Library,
     teach::Lesson,
     words::{Interpreter, is_of_terminal},
@@ -209,10 +209,10 @@ impl Model {
     pub(super) fn edit(&mut self, key: Key) -> bool {
         let Some(editor) = self.terminal.editor.as_mut().filter(|_| key != Key::F1) else { return false };
         match editor.key(key) {
-            Wish::None => {}
-            Wish::Say(what) => self.answer = Some(what.to_owned()),
-            Wish::Close => self.terminal.editor = None,
-            Wish::Write => self.write_block(),
+            EditorRequest::None => {}
+            EditorRequest::Say(what) => self.answer = Some(what.to_owned()),
+            EditorRequest::Close => self.terminal.editor = None,
+            EditorRequest::Write => self.write_block(),
         }
         true
     }

@@ -34,7 +34,7 @@ use crate::{
         tables::{
             Knowledge,
             resume::{EmoveOffset, EmoveStanding, Stance, stance},
-            returning::{EmoveOrigin, Freight, Lost, Near, Return, returning},
+            returning::{BroughtObject, EmoveOrigin, Lost, Near, Return, returning},
         },
     },
     places::is_in_mbd,
@@ -270,7 +270,7 @@ impl Localization {
                 (None, Some(_)) => EmoveOrigin::Way,
                 (None, None) => EmoveOrigin::None,
             },
-            freight: if clampable { Freight::Clampable } else { Freight::Free },
+            freight: if clampable { BroughtObject::Clampable } else { BroughtObject::Free },
             near: match (nest, resting) {
                 (true, _) => Near::Nest,
                 (false, true) => Near::Resting,

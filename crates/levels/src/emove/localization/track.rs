@@ -21,7 +21,7 @@ use interfaces::{
 
 use super::Localization;
 use crate::emove::{
-    robot_place::{is_cut_off, is_led},
+    robot_place::{is_cut_off, is_moved_by_hand},
     tables::{
         Knowledge, PlaceKnowledge,
         track::{EmoveLine, Mover, TrackChange, TrackStep, Tracking, track},
@@ -154,7 +154,7 @@ impl Localization {
             return;
         };
         let record = &mut self.track;
-        let (led, sent) = (is_led(memory), is_motion(memory.emove.prim.command));
+        let (led, sent) = (is_moved_by_hand(memory), is_motion(memory.emove.prim.command));
         record.by_hand = led || (record.by_hand && !sent);
         let gap = apart(&record.end, present);
         let near = gap.inches <= STEP_INCHES && gap.radians <= STEP_RADIANS;

@@ -26,7 +26,7 @@ use crate::emove::{
         returning::{Origination, settle_at},
     },
     robot_place::{is_same_goal, is_same_pose},
-    tables::resume::{EmoveRobot, GoalOf, LegNow, MotionBeginning, MotionStart, WayBack, resume},
+    tables::resume::{EmoveRobot, GoalOf, LegNow, MotionBeginning, MotionStart, ReturnPath, resume},
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -130,7 +130,7 @@ fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> MotionS
     let is_here = begin.place.is_some_and(|from| is_same_pose(&from, goal));
     let Some(way) = begin.way.as_ref().filter(|_| robot == EmoveRobot::OnWay) else {
         let goal = if is_here { GoalOf::Place } else { GoalOf::Another };
-        return MotionStart { robot, goal, back: WayBack::Free, leg: LegNow::Later };
+        return MotionStart { robot, goal, back: ReturnPath::Free, leg: LegNow::Later };
     };
     let route = route_of(way, data).unwrap_or_default();
     let departs = way.next < route.depart_points(data);
@@ -143,7 +143,7 @@ fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> MotionS
     MotionStart {
         robot,
         goal: if is_same_goal(&way.to, goal) { GoalOf::Way } else { GoalOf::Another },
-        back: if closed { WayBack::Closed } else { WayBack::Free },
+        back: if closed { ReturnPath::Closed } else { ReturnPath::Free },
         leg: if departs { LegNow::Depart } else { LegNow::Later },
     }
 }

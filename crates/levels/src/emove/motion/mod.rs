@@ -29,7 +29,7 @@ use super::{
 };
 
 /// A GO-UNTIL ends after 1 s of not-detected: the robot is at rest, and no later contact is expected.
-const PATIENCE: u32 = 25;
+const DETECTION_TICKS: u32 = 25;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Slot {
@@ -81,7 +81,7 @@ impl EmoveMotion {
     pub(super) fn contact(&self, memory: &CommonMemory) -> EmoveContact {
         match memory.prim.status.report {
             PrimReport::DetectedErr => EmoveContact::Met,
-            _ if self.undetected > PATIENCE => EmoveContact::Missed,
+            _ if self.undetected > DETECTION_TICKS => EmoveContact::Missed,
             _ => EmoveContact::Awaited,
         }
     }

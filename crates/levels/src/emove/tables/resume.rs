@@ -26,7 +26,7 @@ pub enum GoalOf {
 
 /// The return along the robot's way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum WayBack {
+pub enum ReturnPath {
     /// The robot can retrace the way to the end of the depart leg.
     Free,
     /// The way connects two poses at the same object, such as hold and seat: the robot can only continue.
@@ -49,7 +49,7 @@ pub struct MotionStart {
     /// The goal, relative to the way.
     pub goal: GoalOf,
     /// The return along the way.
-    pub back: WayBack,
+    pub back: ReturnPath,
     /// The leg on the way.
     pub leg: LegNow,
 }

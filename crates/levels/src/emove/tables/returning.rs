@@ -20,7 +20,7 @@ pub enum EmoveOrigin {
 
 /// The object that the gripper has brought from the start of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Freight {
+pub enum BroughtObject {
     /// No object that can be clamped.
     Free,
     /// A part that a vise or the pedestal may have clamped there.
@@ -47,7 +47,7 @@ pub struct Lost {
     /// The start of its recorded path.
     pub origin: EmoveOrigin,
     /// The object that the gripper has brought from there.
-    pub freight: Freight,
+    pub freight: BroughtObject,
     /// The nearest known location.
     pub near: Near,
 }

@@ -16,7 +16,7 @@ use taskdata::{
 };
 
 use super::{
-    doubles::{Cell, Mishap},
+    doubles::{Cell, DeliveryFault},
     together::Real,
 };
 use crate::{
@@ -250,7 +250,7 @@ impl Bench {
     }
 
     /// Make commands fail whose text contains a word.
-    pub fn spoil(&mut self, word: &'static str, mishap: Mishap) -> &mut Self {
+    pub fn spoil(&mut self, word: &'static str, mishap: DeliveryFault) -> &mut Self {
         self.world.mishaps.push((word, mishap));
         self
     }

@@ -11,13 +11,13 @@ use interfaces::{
 
 use super::{
     bench::{Bench, DONE, error},
-    doubles::Mishap,
+    doubles::DeliveryFault,
 };
 
 #[test]
 fn unmoved_robot_does_not_complete_the_motion() {
     let mut bench = Bench::ready("HOME", 1);
-    bench.spoil("GOTO-PT", Mishap::Stays);
+    bench.spoil("GOTO-PT", DeliveryFault::Stays);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), error(Reason::NotAtGoal));
     assert_eq!(bench.memory.emove.status.at, None);
 }

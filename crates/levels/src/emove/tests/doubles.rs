@@ -46,7 +46,7 @@ fn toward(from: &Frame, to: &Frame, share: f64) -> Frame {
 
 /// The failure of a command whose text contains a word.
 #[derive(Clone, Copy, Debug)]
-pub enum Mishap {
+pub enum DeliveryFault {
     Prim(PrimReport, Reason), // Prim reports this at the end
     Grip(Reason),             // Grip reports `serror`
     Jaws(JawsReport),         // V-Grip or Tool-Grip reports this at any opening
@@ -55,7 +55,7 @@ pub enum Mishap {
     Slip,  // the object slips out of the fingers
     Stays, // Prim reports done, but the robot has not moved
     /// The gripper stays on the robot, drops off it, or is another one.
-    Mated(u8),
+    AttachedGripper(u8),
     /// The sensors of the holster read this.
     Holster(u8),
     Never, // Grip never completes
@@ -86,7 +86,7 @@ pub struct Scene {
     pub object: Option<i32>,
     pub joystick: bool,
     pub button: JoystickGrip,
-    pub mishaps: Vec<(&'static str, Mishap)>,
+    pub mishaps: Vec<(&'static str, DeliveryFault)>,
     pub log: Vec<String>,
     /// Answers of vision; `Done` after the last.
     pub answers: Vec<VisionStatus>,
@@ -183,7 +183,7 @@ impl World<Emove> for Cell {
 }
 
 impl Scene {
-    fn mishap(&self, text: &str) -> Option<Mishap> {
+    fn mishap(&self, text: &str) -> Option<DeliveryFault> {
         self.mishaps.iter().find(|(word, _)| text.contains(word)).map(|(_, mishap)| *mishap)
     }
 
@@ -225,8 +225,8 @@ impl Scene {
             self.resident[which] = 0;
         }
         match self.mishap(text) {
-            Some(Mishap::Mated(id)) => self.mated = id,
-            Some(Mishap::Holster(bits)) => self.holsters[which] = bits,
+            Some(DeliveryFault::AttachedGripper(id)) => self.mated = id,
+            Some(DeliveryFault::Holster(bits)) => self.holsters[which] = bits,
             _ => {}
         }
     }
@@ -341,12 +341,12 @@ impl Prim {
         let command = &memory.emove.prim;
         self.report = PrimReport::Done;
         match world.mishap(text) {
-            Some(Mishap::Prim(report, reason)) => (self.report, self.reason) = (report, reason),
-            Some(Mishap::Joystick) => (world.joystick, self.report) = (true, PrimReport::JoystickOn),
-            Some(Mishap::Slip) => world.object = None,
+            Some(DeliveryFault::Prim(report, reason)) => (self.report, self.reason) = (report, reason),
+            Some(DeliveryFault::Joystick) => (world.joystick, self.report) = (true, PrimReport::JoystickOn),
+            Some(DeliveryFault::Slip) => world.object = None,
             _ => {}
         }
-        if matches!(world.mishap(text), Some(Mishap::Stays)) {
+        if matches!(world.mishap(text), Some(DeliveryFault::Stays)) {
             return;
         }
         match command.command {
@@ -398,7 +398,7 @@ impl Ring {
         let new = command.number != self.receiving.worker.echo();
         if self.receiving.step(command.number, TICKS, text, &mut world.log) {
             match world.mishap(command.command.text()) {
-                Some(Mishap::Ring(report)) => self.failed = Some(report),
+                Some(DeliveryFault::Ring(report)) => self.failed = Some(report),
                 _ if command.command == QuickChangeVerb::Lock => (self.half, world.locked) = (false, true),
                 _ if command.command == QuickChangeVerb::Unlock => (self.half, world.locked) = (false, false),
                 _ => {}
@@ -469,8 +469,10 @@ impl Grip {
         if self.receiving.step(command.number, TICKS, || command.command.text().to_owned(), &mut world.log) {
             self.report = GripReport::Done;
             match (world.mishap(command.command.text()), command.command) {
-                (Some(Mishap::Grip(reason)), _) => (self.report, self.reason) = (GripReport::Serror, reason),
-                (Some(Mishap::Never), _) => self.report = GripReport::Executing,
+                (Some(DeliveryFault::Grip(reason)), _) => {
+                    (self.report, self.reason) = (GripReport::Serror, reason)
+                }
+                (Some(DeliveryFault::Never), _) => self.report = GripReport::Executing,
                 (_, GripVerb::Position | GripVerb::OpenGrip) => {
                     self.opening = command.position;
                     world.object = world.object.filter(|size| *size > command.position);
@@ -530,7 +532,7 @@ impl Jaws {
                 outputs.valves = JawValves { open: !close, close };
             }
             match (world.mishap(command.command.text()), command.command) {
-                (Some(Mishap::Jaws(report)), _) => self.report = report,
+                (Some(DeliveryFault::Jaws(report)), _) => self.report = report,
                 (_, JawsVerb::Pose | JawsVerb::Release) => {
                     (self.opening, self.report) = (self.stops.1, JawsReport::Opened);
                     world.object = None;

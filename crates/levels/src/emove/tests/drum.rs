@@ -12,7 +12,7 @@ use taskdata::files::Index;
 
 use super::{
     bench::{Bench, DONE, PAUSE, error, frame_of, moved},
-    doubles::Mishap,
+    doubles::DeliveryFault,
 };
 use crate::{
     emove::tables::{
@@ -169,7 +169,7 @@ fn tool_commands_without_their_preconditions_are_refused() {
 
 #[test]
 fn unexpected_force_stops_the_tool_command() {
-    let detected = Mishap::Prim(PrimReport::DetectedErr, Reason::Detected);
+    let detected = DeliveryFault::Prim(PrimReport::DetectedErr, Reason::Detected);
     let mut bench = loaded();
     bench.spoil("INS-IN", detected);
     assert_eq!(run(&mut bench, InsertTool), error(Reason::Detected));
@@ -182,7 +182,7 @@ fn unexpected_force_stops_the_tool_command() {
 
 #[test]
 fn missing_contact_fails_the_tool_command() {
-    let missed = Mishap::Prim(PrimReport::NotDetected, Reason::NotDetected);
+    let missed = DeliveryFault::Prim(PrimReport::NotDetected, Reason::NotDetected);
     let mut bench = inserted();
     bench.spoil("REL-SLIDE", missed);
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotDetected));
@@ -225,7 +225,7 @@ fn orders(bench: &Bench) -> Vec<&str> {
 
 #[test]
 fn contact_before_the_drum_is_reported_as_occupied_drum() {
-    let detected = Mishap::Prim(PrimReport::DetectedErr, Reason::Detected);
+    let detected = DeliveryFault::Prim(PrimReport::DetectedErr, Reason::Detected);
     let mut bench = loaded();
     bench.spoil("INS-NEAR", detected);
     assert_eq!(run(&mut bench, InsertTool), error(Reason::DrumOccupied));
@@ -245,7 +245,7 @@ fn contact_before_the_drum_is_reported_as_occupied_drum() {
     assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
     // A sensor failure on the way does not mean that the drum is occupied.
     let mut bench = loaded();
-    bench.spoil("INS-NEAR", Mishap::Prim(PrimReport::SensorError, Reason::SensorError));
+    bench.spoil("INS-NEAR", DeliveryFault::Prim(PrimReport::SensorError, Reason::SensorError));
     assert_eq!(run(&mut bench, InsertTool), error(Reason::SensorError));
 }
 
@@ -288,7 +288,7 @@ fn insert_tool_requires_a_calibration_at_tool_safe() {
 #[test]
 fn gripper_failure_ends_the_tool_command() {
     let mut bench = inserted();
-    bench.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
+    bench.spoil("RELEASE", DeliveryFault::Jaws(JawsReport::Stuck));
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::JawsStuck));
     // A partly released tool is neither pulled out nor done.
     bench.world.mishaps.clear();
@@ -304,14 +304,14 @@ fn gripper_failure_ends_the_tool_command() {
     assert!(bench.log().contains(&"GRASP 250"), "{:?}", bench.log());
     for word in ["POSE", "GRASP"] {
         let mut bench = empty();
-        bench.spoil(word, Mishap::Jaws(JawsReport::Stuck));
+        bench.spoil(word, DeliveryFault::Jaws(JawsReport::Stuck));
         assert_eq!(run(&mut bench, AcquireTool), error(Reason::JawsStuck), "{word}");
     }
 }
 
 #[test]
 fn motion_failure_ends_the_tool_command() {
-    let failed = Mishap::Prim(PrimReport::SensorError, Reason::SensorError);
+    let failed = DeliveryFault::Prim(PrimReport::SensorError, Reason::SensorError);
     for (verb, words) in [
         (InsertTool, &["CAL-SENSOR", "INS-FAR", "INS-NEAR", "INS-IN"][..]),
         (ReleaseTool, &["CAL-SENSOR", "REL-SLIDE", "REL-BACK"]),

@@ -8,7 +8,7 @@ use interfaces::{
 
 use super::{
     bench::{Bench, DONE, attach, detach, error, frame_of, moved, to_holster},
-    doubles::Mishap,
+    doubles::DeliveryFault,
 };
 
 pub const SCENARIOS: &[fn()] = &[
@@ -96,13 +96,13 @@ fn gripper_closes_on_the_way_to_its_holster() {
     assert_eq!(bench.perform(to_holster(1, 1)), DONE);
     assert_eq!(bench.log()[..3], ["GO-THRU A/D-5", "POSITION", "GO-THRU"]);
     let mut bench = Bench::ready("HOME", 1);
-    bench.spoil("POSITION", Mishap::Grip(Reason::GripTimeout));
+    bench.spoil("POSITION", DeliveryFault::Grip(Reason::GripTimeout));
     assert_eq!(bench.perform(to_holster(1, 1)), error(Reason::GripTimeout));
     let mut bench = Bench::ready("HOME", 1);
     bench.hold("BLOCK", 75, 1);
     assert_eq!(bench.perform(to_holster(1, 1)), error(Reason::AlreadyHolding));
     let mut bench = Bench::ready("HOME", 1);
-    bench.spoil("POSITION", Mishap::Never);
+    bench.spoil("POSITION", DeliveryFault::Never);
     bench.begin(to_holster(1, 1));
     bench.wait(100);
     assert_eq!(bench.log(), ["POSITION", "GO-THRU", "GO-THRU A/D-5"], "the final motion waits");
@@ -194,7 +194,7 @@ fn repeated_exchange_is_done_at_once() {
 fn exchange_fails_a_second_after_a_guarded_move_detects_nothing() {
     for word in ["QCD-DOWN", "QCD-SEAT"] {
         let mut bench = above(1);
-        bench.spoil(word, Mishap::Prim(PrimReport::NotDetected, Reason::NotDetected));
+        bench.spoil(word, DeliveryFault::Prim(PrimReport::NotDetected, Reason::NotDetected));
         bench.begin(detach(1));
         while bench.memory.prim.status.report != PrimReport::NotDetected {
             bench.step();
@@ -215,14 +215,14 @@ fn quick_change_failure_is_reported() {
         (QuickChangeReport::SensorMalfunction, Reason::QuickChangeFault),
     ] {
         let mut bench = above(1);
-        bench.spoil("QC-UNLOCK", Mishap::Ring(report));
+        bench.spoil("QC-UNLOCK", DeliveryFault::Ring(report));
         assert_eq!(bench.perform(detach(1)), error(reason));
         let mut bench = bare(1);
-        bench.spoil("QC-LOCK", Mishap::Ring(report));
+        bench.spoil("QC-LOCK", DeliveryFault::Ring(report));
         assert_eq!(bench.perform(attach(1)), error(reason));
         let mut bench = bare(1);
         bench.world.locked = true;
-        bench.spoil("QC-UNLOCK", Mishap::Ring(report));
+        bench.spoil("QC-UNLOCK", DeliveryFault::Ring(report));
         assert_eq!(bench.perform(attach(1)), error(reason));
     }
     for (word, locked, report) in
@@ -230,11 +230,11 @@ fn quick_change_failure_is_reported() {
     {
         let mut bench = bare(1);
         bench.world.locked = locked;
-        bench.spoil(word, Mishap::Ring(report));
+        bench.spoil(word, DeliveryFault::Ring(report));
         assert_eq!(bench.perform(attach(1)), error(Reason::QuickChangeFault), "{word} has no effect");
     }
     let mut bench = above(1);
-    bench.spoil("QC-UNLOCK", Mishap::Ring(QuickChangeReport::Locked));
+    bench.spoil("QC-UNLOCK", DeliveryFault::Ring(QuickChangeReport::Locked));
     assert_eq!(
         bench.perform(detach(1)),
         error(Reason::QuickChangeFault),
@@ -263,10 +263,10 @@ fn quick_change_failure_is_reported() {
 #[test]
 fn gripper_still_attached_after_detach_is_reported() {
     let mut bench = above(1);
-    bench.spoil("QCD-UP", Mishap::Mated(1));
+    bench.spoil("QCD-UP", DeliveryFault::AttachedGripper(1));
     assert_eq!(bench.perform(detach(1)), error(Reason::NotDetached));
     let mut bench = above(1);
-    bench.spoil("QCD-UP", Mishap::Holster(0b0011));
+    bench.spoil("QCD-UP", DeliveryFault::Holster(0b0011));
     assert_eq!(
         bench.perform(detach(1)),
         error(Reason::NotDetached),
@@ -291,7 +291,7 @@ fn missing_gripper_after_attach_is_reported() {
         ("QCA-SLOW", 3, Reason::WrongGripperId),
     ] {
         let mut bench = bare(1);
-        bench.spoil(word, Mishap::Mated(id));
+        bench.spoil(word, DeliveryFault::AttachedGripper(id));
         assert_eq!(bench.perform(attach(1)), error(reason), "{word} {id}");
         bench.step();
         assert_eq!(bench.log().last(), Some(&"PAUSE"), "the robot stops");
@@ -303,12 +303,12 @@ fn missing_gripper_after_attach_is_reported() {
 fn motion_failure_ends_the_exchange() {
     for word in ["QCD-DOWN", "QCD-SEAT", "QCD-UP"] {
         let mut bench = above(2);
-        bench.spoil(word, Mishap::Prim(PrimReport::SensorError, Reason::SensorError));
+        bench.spoil(word, DeliveryFault::Prim(PrimReport::SensorError, Reason::SensorError));
         assert_eq!(bench.perform(detach(2)), error(Reason::SensorError), "{word}");
     }
     for word in ["QCA-FAST", "QCA-SLOW", "QCA-BACK", "QCA-LIFT", "QCA-UP"] {
         let mut bench = bare(2);
-        bench.spoil(word, Mishap::Prim(PrimReport::Error, Reason::NotAtGoal));
+        bench.spoil(word, DeliveryFault::Prim(PrimReport::Error, Reason::NotAtGoal));
         assert_eq!(bench.perform(attach(2)), error(Reason::NotAtGoal), "{word}");
     }
     let mut bench = bare(2);
@@ -317,7 +317,7 @@ fn motion_failure_ends_the_exchange() {
     bench.world.dead.push("Prim");
     assert_eq!(bench.finish(), error(Reason::NeighbourLost), "Prim holds the robot while the ring turns");
     let mut bench = bare(2);
-    bench.spoil("GRASP", Mishap::Jaws(JawsReport::Opened));
+    bench.spoil("GRASP", DeliveryFault::Jaws(JawsReport::Opened));
     assert_eq!(bench.perform(attach(2)), error(Reason::JawsStuck), "the gripper does not close");
     let mut bench = bare(2);
     bench.begin(attach(2));
@@ -334,7 +334,7 @@ fn uncalibrated_parts_gripper_is_calibrated_after_attaching() {
     assert_eq!(bench.log().last(), Some(&"UP-INIT"), "after the last motion");
     let mut bench = bare(1);
     bench.world.grip.initialized = false;
-    bench.spoil("UP-INIT", Mishap::Grip(Reason::GripNotCalibrated));
+    bench.spoil("UP-INIT", DeliveryFault::Grip(Reason::GripNotCalibrated));
     assert_eq!(bench.perform(attach(1)), error(Reason::GripNotCalibrated));
     let mut bench = bare(1);
     bench.world.grip.initialized = false;

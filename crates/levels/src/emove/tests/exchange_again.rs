@@ -18,7 +18,7 @@ use interfaces::{
 
 use super::{
     bench::{Bench, DONE, INTERRUPTIONS, ORDINARY, attach, detach, error, frame_of, moved, to_holster},
-    doubles::Mishap,
+    doubles::DeliveryFault,
 };
 
 pub const SCENARIOS: &[fn()] = &[
@@ -201,7 +201,7 @@ fn locked_ring_at_the_seat_opens_before_the_robot_leaves() {
 fn ring_that_stays_locked_ends_the_exchange() {
     for command in [attach(1), detach(1)] {
         let mut bench = halfway(SEAT, 0, true, 0b1111);
-        bench.spoil("QC-UNLOCK", Mishap::Ring(QuickChangeReport::Locked));
+        bench.spoil("QC-UNLOCK", DeliveryFault::Ring(QuickChangeReport::Locked));
         assert_eq!(bench.perform(command), error(Reason::QuickChangeFault));
         assert_eq!(bench.motions(), [""; 0], "the robot stays at the seat");
     }
@@ -221,12 +221,12 @@ fn order_without_effect_ends_the_exchange() {
         (LIFTING, 1, true, 0b0011, "QCA-"),
     ] {
         let mut bench = halfway(at, mated, locked, bits);
-        bench.spoil(word, Mishap::Stays);
+        bench.spoil(word, DeliveryFault::Stays);
         assert_eq!(bench.perform(attach(1)), error(Reason::NoEffect), "{word} {:?}", bench.world.log);
     }
     let mut bench = halfway(LOW, 1, false, 0b0011);
     bench.world.ring.half = true;
-    bench.spoil("QCA-SLOW", Mishap::Stays);
+    bench.spoil("QCA-SLOW", DeliveryFault::Stays);
     assert_eq!(bench.perform(attach(1)), error(Reason::NoEffect));
 }
 
@@ -243,7 +243,7 @@ fn impossible_detach_is_reported() {
     fails(RAISED, 1, false, 0, Reason::RingNotLocked);
     fails(LIFTING, 1, false, 0, Reason::RingNotLocked);
     let mut bench = halfway(LOW, 1, true, 0b0011);
-    bench.spoil("QC-PAUSE", Mishap::Ring(QuickChangeReport::SensorMalfunction));
+    bench.spoil("QC-PAUSE", DeliveryFault::Ring(QuickChangeReport::SensorMalfunction));
     assert_eq!(bench.pause(), error(Reason::QuickChangeFault));
     assert_eq!(bench.perform(detach(1)), error(Reason::QuickChangeFault));
     // The gripper is in its holster, and the bare robot at no known location.
@@ -380,7 +380,7 @@ fn release_with_stuck_fingers_keeps_the_object() {
     assert_eq!(bench.run(MovToObj, "SHAFT", 1, "BENCH", 2), DONE);
     bench.hold("SHAFT", 204, 2);
     let mut stuck = bench.clone();
-    stuck.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
+    stuck.spoil("RELEASE", DeliveryFault::Jaws(JawsReport::Stuck));
     stuck.command(Release, "SHAFT", 1, "BENCH", 2);
     stuck.wait(2);
     stuck.world.v_grip.opening = 250;
@@ -421,7 +421,7 @@ fn object_regrasped_by_the_operator_is_not_released() {
     bench.command(Pause, "", 0, "", 0);
     bench.world.joystick = true;
     bench.wait(20);
-    bench.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
+    bench.spoil("RELEASE", DeliveryFault::Jaws(JawsReport::Stuck));
     for button in [JoystickGrip::Open, JoystickGrip::Close] {
         bench.world.button = button;
         bench.wait(20);
@@ -436,11 +436,11 @@ fn object_regrasped_by_the_operator_is_not_released() {
 #[test]
 fn partly_released_object_is_grasped_again() {
     for (gripper, object, size, wide, stuck) in [
-        (1, "BLOCK", 75, 140, Mishap::Grip(Reason::GripUnattainable)),
+        (1, "BLOCK", 75, 140, DeliveryFault::Grip(Reason::GripUnattainable)),
         // The fingers still detect it.
-        (1, "BLOCK", 75, 75, Mishap::Grip(Reason::GripUnattainable)),
-        (2, "SHAFT", 204, 250, Mishap::Jaws(JawsReport::Stuck)),
-        (3, "CUTTER", 250, 300, Mishap::Jaws(JawsReport::Stuck)),
+        (1, "BLOCK", 75, 75, DeliveryFault::Grip(Reason::GripUnattainable)),
+        (2, "SHAFT", 204, 250, DeliveryFault::Jaws(JawsReport::Stuck)),
+        (3, "CUTTER", 250, 300, DeliveryFault::Jaws(JawsReport::Stuck)),
     ] {
         let mut bench = Bench::ready("BENCH", gripper);
         bench.hold(object, size, gripper);
@@ -507,7 +507,7 @@ fn pressurised_jaws_are_treated_as_moving() {
 fn jaws_without_air_have_no_grasp() {
     let mut bench = Bench::ready("BENCH", 2);
     bench.world.object = Some(204);
-    bench.spoil("GRASP", Mishap::Jaws(JawsReport::Stuck));
+    bench.spoil("GRASP", DeliveryFault::Jaws(JawsReport::Stuck));
     bench.command(GraspObj, "SHAFT", 1, "BENCH", 2);
     bench.wait(2);
     bench.world.v_grip.opening = 204;
@@ -598,7 +598,7 @@ fn bare_robot_leaves_an_empty_holster() {
             for command in [attach(1), detach(1)] {
                 let mut bench = halfway(at, 0, false, bits);
                 bench.world.resident[0] = 0;
-                bench.spoil("QCD-UP", Mishap::Stays);
+                bench.spoil("QCD-UP", DeliveryFault::Stays);
                 assert_eq!(bench.perform(command), error(Reason::NoEffect));
             }
         }

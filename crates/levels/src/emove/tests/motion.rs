@@ -16,7 +16,7 @@ use taskdata::files::{LocptId, PathPoint, Target};
 
 use super::{
     bench::{Bench, DONE, data, error, frame_of, moved},
-    doubles::Mishap,
+    doubles::DeliveryFault,
 };
 use crate::emove::localization::surroundings::Surroundings;
 
@@ -171,13 +171,13 @@ fn fingers_open_only_after_the_depart_points() {
 #[test]
 fn gripper_failure_stops_the_motion() {
     let mut bench = Bench::ready("HOME", 1);
-    bench.spoil("POSITION", Mishap::Grip(Reason::GripTimeout));
+    bench.spoil("POSITION", DeliveryFault::Grip(Reason::GripTimeout));
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), error(Reason::GripTimeout));
     bench.step();
     assert_eq!(bench.log().last(), Some(&"PAUSE"), "the robot stops");
     let mut bench = Bench::ready("HOME", 2);
     bench.world.v_grip.opening = 50;
-    bench.spoil("POSE", Mishap::Jaws(JawsReport::Closed));
+    bench.spoil("POSE", DeliveryFault::Jaws(JawsReport::Closed));
     assert_eq!(
         bench.run(MovToObj, "SHAFT", 1, "BENCH", 2),
         error(Reason::JawsStuck),
@@ -187,12 +187,12 @@ fn gripper_failure_stops_the_motion() {
     bench.world.object = Some(250);
     assert_eq!(bench.run(GraspObj, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck), "another size");
     let mut bench = Bench::ready("HOME", 2);
-    bench.spoil("GRASP", Mishap::Jaws(JawsReport::Opened));
+    bench.spoil("GRASP", DeliveryFault::Jaws(JawsReport::Opened));
     assert_eq!(bench.run(GraspObj, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck));
     bench.world.object = Some(200);
     bench.world.mishaps.clear();
     bench.hold("SHAFT", 200, 2);
-    bench.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
+    bench.spoil("RELEASE", DeliveryFault::Jaws(JawsReport::Stuck));
     assert_eq!(bench.run(Release, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck));
     let mut bench = Bench::ready("HOME", 1);
     bench.world.dead.push("gripper");
@@ -222,7 +222,7 @@ fn failure_of_prim_is_passed_up() {
                 bench.hold("BLOCK", 75, 1);
             }
             let location = if verb == MovToHol { "HOLSTER-R" } else { "BENCH" };
-            bench.spoil("GO-THRU", Mishap::Prim(report, reason));
+            bench.spoil("GO-THRU", DeliveryFault::Prim(report, reason));
             assert_eq!(bench.run(verb, object, 1, location, gripper), error(reason), "{verb}");
             assert!(bench.memory.emove.status.at.is_none(), "the robot's place is unknown");
         }
@@ -231,7 +231,7 @@ fn failure_of_prim_is_passed_up() {
     bench.world.dead.push("Prim");
     assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), error(Reason::NeighbourLost));
     let mut bench = Bench::ready("HOME", 0);
-    bench.spoil("GOTO-PT", Mishap::Joystick);
+    bench.spoil("GOTO-PT", DeliveryFault::Joystick);
     assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), (StatusReport::JoystickOn, Reason::JoystickOn));
 }
 
@@ -239,13 +239,13 @@ fn failure_of_prim_is_passed_up() {
 fn lost_part_is_reported_with_each_gripper() {
     for (gripper, object, size) in PARTS {
         for verb in [MovObjTo, MovToLoc] {
-            for gone in [Mishap::Slip, Mishap::Mated(0)] {
+            for gone in [DeliveryFault::Slip, DeliveryFault::AttachedGripper(0)] {
                 let mut bench = Bench::ready("HOME", gripper);
                 bench.hold(object, size, gripper);
                 bench.command(verb, object, 1, "VISE", gripper);
                 bench.wait(6);
                 match gone {
-                    Mishap::Slip => {
+                    DeliveryFault::Slip => {
                         (
                             bench.world.grip.opening,
                             bench.world.v_grip.opening,
@@ -254,8 +254,11 @@ fn lost_part_is_reported_with_each_gripper() {
                     }
                     _ => (bench.world.mated, bench.world.locked) = (0, false),
                 }
-                let reason =
-                    if matches!(gone, Mishap::Slip) { Reason::ObjectLost } else { Reason::GripperGone };
+                let reason = if matches!(gone, DeliveryFault::Slip) {
+                    Reason::ObjectLost
+                } else {
+                    Reason::GripperGone
+                };
                 assert_eq!(bench.finish(), error(reason), "{object} {verb}");
                 assert!(!bench.memory.emove.status.held.is_held());
             }
@@ -330,7 +333,7 @@ fn release_without_an_object_opens_or_is_done_at_once() {
     assert_eq!(bench.run(Release, "", 0, "", 0), DONE);
     assert!(bench.log().is_empty(), "a bare robot holds nothing");
     let mut bench = Bench::ready("HOME", 1);
-    bench.spoil("OPEN-GRIP", Mishap::Grip(Reason::None));
+    bench.spoil("OPEN-GRIP", DeliveryFault::Grip(Reason::None));
     assert_eq!(bench.run(Release, "BLOCK", 1, "", 1), error(Reason::GripUnattainable));
     // The present gripper releases the held object with the object's own depart size.
     let mut bench = Bench::ready("HOME", 1);
@@ -452,7 +455,7 @@ fn failed_picture_is_retried_and_then_reported() {
         "the resolvers give no position of the camera"
     );
     let mut bench = Bench::ready("HOME", 1);
-    bench.spoil("GOTO-PT", Mishap::Prim(PrimReport::Error, Reason::NotAtGoal));
+    bench.spoil("GOTO-PT", DeliveryFault::Prim(PrimReport::Error, Reason::NotAtGoal));
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::NotAtGoal));
 }
 
@@ -514,7 +517,7 @@ fn withdraw_moves_the_robot_clear() {
     bench.world.grip.opening = 60;
     assert_eq!(bench.finish(), error(Reason::ObjectLost));
     let mut bench = Bench::ready("BENCH", 0);
-    bench.spoil("WITHDRAW", Mishap::Prim(PrimReport::Error, Reason::NotAtGoal));
+    bench.spoil("WITHDRAW", DeliveryFault::Prim(PrimReport::Error, Reason::NotAtGoal));
     assert_eq!(bench.run(Withdraw, "", 0, "BENCH", 0), error(Reason::NotAtGoal));
     assert_eq!(bench.run(Withdraw, "", 0, "HOME", 0), error(Reason::NoRelativeMove));
 }

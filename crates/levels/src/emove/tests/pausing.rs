@@ -12,7 +12,7 @@ use rcs_core::table::Verdict;
 
 use super::{
     bench::{Bench, DONE, PAUSE, error, frame_of, given, moved},
-    doubles::Mishap,
+    doubles::DeliveryFault,
 };
 use crate::{
     emove::tables::{
@@ -34,7 +34,7 @@ pub const SCENARIOS: &[fn()] = &[
 fn link_failure_during_pause_is_initialized_again_or_reported() {
     // The gripper is not calibrated yet.
     let mut bench = Bench::new("HOME", 1);
-    bench.spoil("PAUSE", Mishap::Never);
+    bench.spoil("PAUSE", DeliveryFault::Never);
     bench.command(Pause, "", 0, "", 0);
     bench.wait(40);
     (bench.world.prim.report, bench.world.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
@@ -100,7 +100,7 @@ fn pause_accepts_each_gripper_at_the_start() {
 #[test]
 fn pause_waits_for_the_calibration() {
     let mut bench = Bench::new("HOME", 1);
-    bench.spoil("PAUSE", Mishap::Never);
+    bench.spoil("PAUSE", DeliveryFault::Never);
     bench.command(Pause, "", 0, "", 0);
     bench.wait(200);
     assert_eq!(bench.memory.prim.status.report, PrimReport::Done);
@@ -126,7 +126,7 @@ fn only_the_attached_gripper_is_awake() {
 #[test]
 fn failed_pause_reports_its_reason() {
     let mut bench = Bench::new("HOME", 1);
-    bench.spoil("QC-PAUSE", Mishap::Ring(QuickChangeReport::SensorMalfunction));
+    bench.spoil("QC-PAUSE", DeliveryFault::Ring(QuickChangeReport::SensorMalfunction));
     assert_eq!(bench.pause(), error(Reason::QuickChangeFault));
     let mut bench = Bench::new("HOME", 1);
     bench.command(Pause, "", 0, "", 0);
@@ -144,10 +144,10 @@ fn failed_pause_reports_its_reason() {
     bench.world.dead.push("Prim");
     assert_eq!(bench.finish(), error(Reason::NeighbourLost));
     let mut bench = Bench::new("HOME", 1);
-    bench.spoil("ROBOT-INIT", Mishap::Prim(PrimReport::T3LinkOff, Reason::LinkOff));
+    bench.spoil("ROBOT-INIT", DeliveryFault::Prim(PrimReport::T3LinkOff, Reason::LinkOff));
     assert_eq!(bench.pause(), error(Reason::LinkOff));
     let mut bench = Bench::new("HOME", 1);
-    bench.spoil("ROBOT-INIT", Mishap::Joystick);
+    bench.spoil("ROBOT-INIT", DeliveryFault::Joystick);
     assert_eq!(bench.pause().1, Reason::JoystickOn);
     let mut bench = Bench::new("HOME", 1);
     bench.command(Pause, "", 0, "", 0);
@@ -159,7 +159,7 @@ fn failed_pause_reports_its_reason() {
 #[test]
 fn ring_between_its_ends_is_at_rest() {
     let mut bench = Bench::new("HOME", 1);
-    bench.spoil("QC-PAUSE", Mishap::Ring(QuickChangeReport::Stuck));
+    bench.spoil("QC-PAUSE", DeliveryFault::Ring(QuickChangeReport::Stuck));
     assert_eq!(bench.pause(), DONE);
     assert_eq!(bench.memory.quick_change.status.ring, RingPosition::Between);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), error(Reason::RingNotLocked));
@@ -234,15 +234,15 @@ fn only_a_finished_pause_continues() {
                 place: PlaceKnowledge::Known,
                 resolvers: Knowledge::Known,
             };
-            let goes_on =
+            let has_next =
                 pause == tables::Pause::Standing && matches!(outcome, Outcome::Done | Outcome::Joystick);
-            assert_eq!(attend((), &watch) == Verdict::Passed(()), goes_on, "{pause} {outcome}");
+            assert_eq!(attend((), &watch) == Verdict::Passed(()), has_next, "{pause} {outcome}");
             // `.R` initializes the link, then the pause continues.
             for (initialization, action) in [
                 (tables::Initialization::Asked, Action::RobotInit),
                 (tables::Initialization::Over, Action::StopRobot),
             ] {
-                let expected = if goes_on { action } else { Action::Wait };
+                let expected = if has_next { action } else { Action::Wait };
                 let Verdict::Decided(found) = attend((), &Watch { initialization, ..watch }) else {
                     panic!("{pause} {outcome}: the tables of the commands must not decide");
                 };
@@ -325,7 +325,7 @@ fn returned_robot_is_done_when_all_processes_rest() {
     bench.wait(2);
     assert!(ticks(&mut bench) > at_rest, "the fingers open first");
     let mut bench = led();
-    bench.spoil("QC-PAUSE", Mishap::Ring(QuickChangeReport::Executing));
+    bench.spoil("QC-PAUSE", DeliveryFault::Ring(QuickChangeReport::Executing));
     bench.world.joystick = false;
     bench.wait(20);
     assert_eq!(bench.memory.emove.status.report, StatusReport::JoystickOn, "Quick Change never pauses");
@@ -339,7 +339,7 @@ fn returned_robot_is_done_when_all_processes_rest() {
         ticks(&mut bench);
     }
     let mut bench = led();
-    bench.spoil("PAUSE", Mishap::Prim(PrimReport::T3LinkErr, Reason::LinkError));
+    bench.spoil("PAUSE", DeliveryFault::Prim(PrimReport::T3LinkErr, Reason::LinkError));
     ticks(&mut bench);
     assert_eq!(bench.memory.emove.status.reason, Reason::LinkError, "done with a reason");
     let mut bench = led();
@@ -362,7 +362,7 @@ fn operator_interrupts_a_command() {
     assert_eq!(bench.memory.emove.status.report, StatusReport::Done);
     // An interrupted command without a pause ends in an error when the box is released.
     let mut bench = Bench::ready("HOME", 1);
-    bench.spoil("GO-THRU", Mishap::Joystick);
+    bench.spoil("GO-THRU", DeliveryFault::Joystick);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), (StatusReport::JoystickOn, Reason::JoystickOn));
     bench.memory.prim.status.report = PrimReport::Done;
     bench.world.dead.push("Prim");

@@ -13,10 +13,10 @@ use interfaces::{
 
 use super::{
     bench::{Bench, DONE, EmoveLine, INTERRUPTIONS, ORDINARY, error, frame_of, moved},
-    doubles::Mishap,
+    doubles::DeliveryFault,
 };
 use crate::emove::tables::resume::{
-    EmoveRobot, GoalOf, LegNow, MotionBeginning, MotionStart, WayBack, resume,
+    EmoveRobot, GoalOf, LegNow, MotionBeginning, MotionStart, ReturnPath, resume,
 };
 
 pub const SCENARIOS: &[fn()] = &[
@@ -213,7 +213,7 @@ fn restarted_emove_stops_its_orders() {
     }
     // The operator keeps the robot.
     let mut bench = Bench::ready("HOME", 1);
-    bench.spoil("GO-THRU", Mishap::Joystick);
+    bench.spoil("GO-THRU", DeliveryFault::Joystick);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), (StatusReport::JoystickOn, Reason::JoystickOn));
     let sent = bench.memory.emove.prim.number;
     bench.restart();
@@ -448,12 +448,12 @@ fn motion_begins_at_the_place_of_the_robot() {
         (decision.row, decision.action)
     };
     for &goal in GoalOf::ALL {
-        for &back in WayBack::ALL {
+        for &back in ReturnPath::ALL {
             for &leg in LegNow::ALL {
                 let another = match (leg, back) {
                     (LegNow::Depart, _) => (5, MotionBeginning::GoOut),
-                    (LegNow::Later, WayBack::Free) => (6, MotionBeginning::GoBack),
-                    (LegNow::Later, WayBack::Closed) => (7, MotionBeginning::RefuseBack),
+                    (LegNow::Later, ReturnPath::Free) => (6, MotionBeginning::GoBack),
+                    (LegNow::Later, ReturnPath::Closed) => (7, MotionBeginning::RefuseBack),
                 };
                 let on_way = if goal == GoalOf::Way { (4, MotionBeginning::GoOn) } else { another };
                 let here = goal == GoalOf::Place;

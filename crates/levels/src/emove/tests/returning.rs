@@ -14,7 +14,7 @@ use super::{
 use crate::emove::tables::{
     Knowledge,
     resume::{EmoveOffset, EmoveStanding, Stance, stance},
-    returning::{EmoveOrigin, Freight, Lost, Near, Return, returning},
+    returning::{BroughtObject, EmoveOrigin, Lost, Near, Return, returning},
     track::{EmoveLine as Path, Mover, TrackChange, TrackStep, Tracking, track},
 };
 
@@ -385,13 +385,13 @@ fn return_table_decides_by_record_and_surroundings() {
     for &resolvers in Knowledge::ALL {
         for &course in Course::ALL {
             for &origin in EmoveOrigin::ALL {
-                for &freight in Freight::ALL {
+                for &freight in BroughtObject::ALL {
                     for &near in Near::ALL {
                         let lost = Lost { resolvers, course, origin, freight, near };
                         let safe = resolvers == Knowledge::Known
                             && course != Course::Adrift
                             && origin != EmoveOrigin::Drum
-                            && freight == Freight::Free;
+                            && freight == BroughtObject::Free;
                         let expected = match (safe, course, origin, near) {
                             (false, ..) => Return::Refuse,
                             (_, Course::Tracked, EmoveOrigin::Place | EmoveOrigin::Way, _) => Return::Retrace,

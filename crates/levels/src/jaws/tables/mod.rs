@@ -18,7 +18,7 @@ use interfaces::{
 };
 use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
-use self::valves::Mated;
+use self::valves::AttachedGripper;
 use super::goals;
 use crate::execution::{Asked, EXECUTE};
 
@@ -93,7 +93,7 @@ pub struct StateVariables {
     pub verb: JawsVerb,
     pub request: Request,
     pub situation: Situation,
-    pub mated: Mated,
+    pub mated: AttachedGripper,
     /// The part presence.
     pub felt: Felt,
     /// `commanded-size` for an accepted command, 0.01 in.

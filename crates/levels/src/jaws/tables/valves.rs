@@ -4,7 +4,7 @@ use rcs_core::{Actions, Plain, Variables, decision_table};
 
 /// The gripper on the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Mated {
+pub enum AttachedGripper {
     /// It may be that of this process: id pins without contact on a locked ring do not identify the gripper.
     Possible,
     /// The ring is not locked, or on another gripper.
@@ -27,7 +27,7 @@ pub enum Air {
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Supply {
     /// The gripper on the ring.
-    pub mated: Mated,
+    pub mated: AttachedGripper,
     /// The air that the row of the command sets.
     pub set: Air,
 }

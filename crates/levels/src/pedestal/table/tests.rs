@@ -211,14 +211,14 @@ fn failed_calibration_does_not_end_a_refused_or_missing_command() {
 /// In every tick in which the calibration can fail.
 #[test]
 fn command_refused_during_a_failing_calibration_keeps_its_reason() {
-    let astray = || Bench::new(Rotary { wrong: 500.0, ..Rotary::new(-1200) });
-    let mut bench = astray();
+    let misplaced = || Bench::new(Rotary { wrong: 500.0, ..Rotary::new(-1200) });
+    let mut bench = misplaced();
     let failed = (1_u32..).find(|_| {
         bench.wait(1);
         bench.process.state.phase == TablePhase::Failed
     });
     for ticks in (0..4).filter_map(|before| failed?.checked_sub(before)) {
-        let mut bench = astray();
+        let mut bench = misplaced();
         bench.wait(ticks);
         assert_eq!(bench.execute((TableVerb::Turn, 0)), (PedestalReport::CannotDo, Reason::TableLimit));
     }

@@ -194,7 +194,7 @@ fn run(seed: u64, moves: u32) -> Result<u64, String> {
         if !trouble {
             knob = 1000;
         }
-        let (mut patience, mut nearest) = (100_000_u32, f64::INFINITY);
+        let (mut steps_left, mut nearest) = (100_000_u32, f64::INFINITY);
         loop {
             if trouble && random.below(20) == 0 {
                 knob = [0, 1, 100, 500, 1000, 1000][random.below(6) as usize];
@@ -223,11 +223,11 @@ fn run(seed: u64, moves: u32) -> Result<u64, String> {
                 }
                 break;
             }
-            patience -= 1;
-            if patience == 0 {
+            steps_left -= 1;
+            if steps_left == 0 {
                 return Err(at(format!("never ends: {motion:#?}")));
             }
-            if trouble && patience % 500 == 0 {
+            if trouble && steps_left % 500 == 0 {
                 knob = 1000;
             }
         }

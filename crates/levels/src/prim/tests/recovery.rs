@@ -307,7 +307,7 @@ fn robot_init_clears_link_faults_but_not_a_robot_off_its_path() {
     rig.world.t3i.fault = LinkFault::DepcError;
     rig.wait(3);
     assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::Done);
-    (rig.world.t3i.left, rig.world.t3i.astray) = (true, true);
+    (rig.world.t3i.left, rig.world.t3i.misplaced) = (true, true);
     rig.wait(3);
     assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::Error);
     assert_eq!(rig.memory.prim.status.reason, Reason::OffPath);

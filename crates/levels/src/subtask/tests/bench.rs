@@ -26,7 +26,7 @@ use crate::{
 const WORK: u32 = 3; // ticks of a command
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Mishap {
+pub enum DeliveryFault {
     Error(Reason),
     Hang,
     /// No answer, not even an echo.
@@ -44,14 +44,15 @@ pub struct EmoveDouble {
     worker: Worker,
     pub outputs: EmoveOutputs,
     pub received: Vec<EmoveCommand>,
-    pub mishap: Option<(EmoveVerb, Mishap)>,
+    pub mishap: Option<(EmoveVerb, DeliveryFault)>,
     pub ignores: bool,
 }
 
 impl EmoveDouble {
     fn step(&mut self, tick: Tick, command: &EmoveCommand) {
-        let silent =
-            self.mishap.is_some_and(|(verb, mishap)| verb == command.command && mishap == Mishap::Silence);
+        let silent = self
+            .mishap
+            .is_some_and(|(verb, mishap)| verb == command.command && mishap == DeliveryFault::Silence);
         self.outputs.header = Header { stamp: tick, ..Header::default() };
         if silent {
             return;
@@ -75,17 +76,19 @@ impl EmoveDouble {
         match mishap {
             _ if self.ignores => {}
             None => emove::effect(status, command),
-            Some(Mishap::Error(reason)) => (status.report, status.reason) = (StatusReport::Error, reason),
-            Some(Mishap::Special(reason)) => {
+            Some(DeliveryFault::Error(reason)) => {
+                (status.report, status.reason) = (StatusReport::Error, reason)
+            }
+            Some(DeliveryFault::Special(reason)) => {
                 (status.report, status.reason) = (StatusReport::JoystickOn, reason)
             }
-            Some(Mishap::Hang | Mishap::Silence) => status.report = StatusReport::Executing,
-            Some(Mishap::NoEffect) => {}
-            Some(Mishap::Loss) => {
+            Some(DeliveryFault::Hang | DeliveryFault::Silence) => status.report = StatusReport::Executing,
+            Some(DeliveryFault::NoEffect) => {}
+            Some(DeliveryFault::Loss) => {
                 emove::effect(status, command);
                 status.held = Holding::Nothing;
             }
-            Some(Mishap::OtherGripper(id)) => status.end_effector_id = Some(id),
+            Some(DeliveryFault::OtherGripper(id)) => status.end_effector_id = Some(id),
         }
     }
 
@@ -104,7 +107,7 @@ pub struct PedestalDouble {
     worker: Worker,
     pub outputs: PedestalOutputs,
     pub received: Vec<PedestalCommand>,
-    pub mishap: Option<(PedestalVerb, Mishap)>,
+    pub mishap: Option<(PedestalVerb, DeliveryFault)>,
     pub part: i32,   // width of the part at the hand, 0.01 in
     pub slips: bool, // the hand loses the object while the table turns
     pub ignores: bool,
@@ -114,7 +117,7 @@ impl PedestalDouble {
     fn step(&mut self, tick: Tick, command: &PedestalCommand) {
         let mishap = self.mishap.filter(|(verb, _)| *verb == command.command).map(|(_, mishap)| mishap);
         let outputs = &mut self.outputs;
-        if mishap == Some(Mishap::Silence) {
+        if mishap == Some(DeliveryFault::Silence) {
             return;
         }
         outputs.header = Header { stamp: tick, ..Header::default() };
@@ -126,12 +129,12 @@ impl PedestalDouble {
             }
             Turn::Ends => {
                 (status.report, status.reason) = match mishap {
-                    Some(Mishap::Error(reason)) => (PedestalReport::Error, reason),
-                    Some(Mishap::Special(reason)) => (PedestalReport::CannotDo, reason),
-                    Some(Mishap::Hang) => (PedestalReport::Executing, Reason::None),
+                    Some(DeliveryFault::Error(reason)) => (PedestalReport::Error, reason),
+                    Some(DeliveryFault::Special(reason)) => (PedestalReport::CannotDo, reason),
+                    Some(DeliveryFault::Hang) => (PedestalReport::Executing, Reason::None),
                     _ => (PedestalReport::Done, Reason::None),
                 };
-                if mishap != Some(Mishap::NoEffect) && !self.ignores {
+                if mishap != Some(DeliveryFault::NoEffect) && !self.ignores {
                     Self::effect(status, command, self.part, self.slips);
                 }
             }

@@ -16,7 +16,7 @@ use rcs_core::name::Name16;
 use taskdata::files::TaskData;
 
 use self::{
-    bench::{Bench, DONE, Mishap},
+    bench::{Bench, DONE, DeliveryFault},
     data::without,
 };
 use super::Subtask;
@@ -115,12 +115,12 @@ fn gripper_with_an_object_is_not_detached() {
 #[test]
 fn exchange_failure_is_reported_with_its_reason() {
     for (verb, mishap, reason) in [
-        (EmoveVerb::QcDetach, Mishap::NoEffect, Reason::NotDetached),
-        (EmoveVerb::QcAttach, Mishap::NoEffect, Reason::NotAttached),
-        (EmoveVerb::QcAttach, Mishap::OtherGripper(3), Reason::WrongGripperId),
-        (EmoveVerb::MovToHol, Mishap::Error(Reason::NoTrajectory), Reason::NoTrajectory),
-        (EmoveVerb::QcDetach, Mishap::Error(Reason::QuickChangeStuck), Reason::QuickChangeStuck),
-        (EmoveVerb::QcAttach, Mishap::Silence, Reason::NeighbourLost),
+        (EmoveVerb::QcDetach, DeliveryFault::NoEffect, Reason::NotDetached),
+        (EmoveVerb::QcAttach, DeliveryFault::NoEffect, Reason::NotAttached),
+        (EmoveVerb::QcAttach, DeliveryFault::OtherGripper(3), Reason::WrongGripperId),
+        (EmoveVerb::MovToHol, DeliveryFault::Error(Reason::NoTrajectory), Reason::NoTrajectory),
+        (EmoveVerb::QcDetach, DeliveryFault::Error(Reason::QuickChangeStuck), Reason::QuickChangeStuck),
+        (EmoveVerb::QcAttach, DeliveryFault::Silence, Reason::NeighbourLost),
     ] {
         let mut bench = Bench::default();
         bench.world.emove.mishap = Some((verb, mishap));
@@ -227,11 +227,11 @@ const BEFORE: [(PedestalVerb, usize); 4] = [
 fn pedestal_failure_stops_the_robot() {
     for (verb, sent) in BEFORE {
         for (mishap, reason) in [
-            (Mishap::Special(Reason::None), Reason::PedestalCannot),
-            (Mishap::Special(Reason::TableLimit), Reason::TableLimit),
-            (Mishap::Error(Reason::None), Reason::PedestalError),
-            (Mishap::Error(Reason::TableStuck), Reason::TableStuck),
-            (Mishap::Silence, Reason::PedestalSilent),
+            (DeliveryFault::Special(Reason::None), Reason::PedestalCannot),
+            (DeliveryFault::Special(Reason::TableLimit), Reason::TableLimit),
+            (DeliveryFault::Error(Reason::None), Reason::PedestalError),
+            (DeliveryFault::Error(Reason::TableStuck), Reason::TableStuck),
+            (DeliveryFault::Silence, Reason::PedestalSilent),
         ] {
             let mut bench = Bench::grasped("PART", 1);
             bench.world.pedestal.mishap = Some((verb, mishap));
@@ -273,9 +273,9 @@ fn other_object_in_the_pedestal_prevents_the_regrip() {
 #[test]
 fn object_lost_during_a_regrip_is_reported() {
     for (verb, mishap, reason) in [
-        (EmoveVerb::MovObjTo, Mishap::Loss, Reason::ObjectLost),
-        (EmoveVerb::GraspObj, Mishap::NoEffect, Reason::GraspMissed),
-        (EmoveVerb::MovToObj, Mishap::Error(Reason::NoApproach), Reason::NoApproach),
+        (EmoveVerb::MovObjTo, DeliveryFault::Loss, Reason::ObjectLost),
+        (EmoveVerb::GraspObj, DeliveryFault::NoEffect, Reason::GraspMissed),
+        (EmoveVerb::MovToObj, DeliveryFault::Error(Reason::NoApproach), Reason::NoApproach),
     ] {
         let mut bench = Bench::grasped("PART", 1);
         bench.world.emove.mishap = Some((verb, mishap));
@@ -358,13 +358,13 @@ fn tool_failure_is_reported_with_its_reason() {
     let (insert, release) = (EmoveVerb::InsertTool, EmoveVerb::ReleaseTool);
     let (acquire, remove) = (EmoveVerb::AcquireTool, EmoveVerb::RemoveTool);
     for (emove, mishap, reason) in [
-        (insert, Mishap::Loss, Reason::ObjectLost),
-        (remove, Mishap::Loss, Reason::ObjectLost),
-        (acquire, Mishap::NoEffect, Reason::GraspMissed),
-        (insert, Mishap::Error(Reason::Detected), Reason::Detected),
-        (remove, Mishap::Error(Reason::Detected), Reason::Detected),
-        (release, Mishap::Error(Reason::NotDetected), Reason::NotDetected),
-        (acquire, Mishap::Error(Reason::SensorError), Reason::SensorError),
+        (insert, DeliveryFault::Loss, Reason::ObjectLost),
+        (remove, DeliveryFault::Loss, Reason::ObjectLost),
+        (acquire, DeliveryFault::NoEffect, Reason::GraspMissed),
+        (insert, DeliveryFault::Error(Reason::Detected), Reason::Detected),
+        (remove, DeliveryFault::Error(Reason::Detected), Reason::Detected),
+        (release, DeliveryFault::Error(Reason::NotDetected), Reason::NotDetected),
+        (acquire, DeliveryFault::Error(Reason::SensorError), Reason::SensorError),
     ] {
         let mut bench = if emove == acquire { Bench::default() } else { Bench::grasped("TOOL-1", 1) };
         bench.world.emove.mishap = Some((emove, mishap));
@@ -402,11 +402,11 @@ fn object_with_vision_data_is_located_by_vision() {
     let end = bench.run(SubtaskVerb::GetObject, "PART", (1, 1), "PFIXTURE");
     assert_eq!(end, error(Reason::AlreadyHolding));
     let mut bench = Bench::default();
-    bench.world.emove.mishap = Some((EmoveVerb::LocateObj, Mishap::Error(Reason::NothingSeen)));
+    bench.world.emove.mishap = Some((EmoveVerb::LocateObj, DeliveryFault::Error(Reason::NothingSeen)));
     let end = bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1");
     assert_eq!(end, error(Reason::NothingSeen));
     let mut bench = Bench::default();
-    bench.world.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::NoEffect));
+    bench.world.emove.mishap = Some((EmoveVerb::GraspObj, DeliveryFault::NoEffect));
     let end = bench.run(SubtaskVerb::GetObject, "PART", (1, 1), "PFIXTURE");
     assert_eq!(end, error(Reason::GraspMissed));
     assert_eq!(bench.sent(), ["MOV-TO-OBJ", "GRASP-OBJ"]);
@@ -436,7 +436,7 @@ fn other_commands_send_their_elemental_moves() {
 fn object_lost_during_a_motion_is_reported() {
     for verb in [SubtaskVerb::PlaceObj, SubtaskVerb::MoveObjToDest] {
         let mut bench = Bench::grasped("PART", 1);
-        bench.world.emove.mishap = Some((EmoveVerb::MovObjTo, Mishap::Loss));
+        bench.world.emove.mishap = Some((EmoveVerb::MovObjTo, DeliveryFault::Loss));
         assert_eq!(bench.run(verb, "PART", (1, 1), "PFIXTURE"), error(Reason::ObjectLost));
     }
 }
@@ -452,7 +452,7 @@ fn error_of_e_move_is_passed_up_by_every_command() {
         (SubtaskVerb::Pause, EmoveVerb::Pause, ""),
     ] {
         let mut bench = Bench::grasped("PART", 1);
-        bench.world.emove.mishap = Some((emove, Mishap::Error(Reason::NotAtGoal)));
+        bench.world.emove.mishap = Some((emove, DeliveryFault::Error(Reason::NotAtGoal)));
         assert_eq!(bench.run(verb, object, (1, 1), "SAFE"), error(Reason::NotAtGoal), "{verb}");
     }
 }
@@ -460,7 +460,7 @@ fn error_of_e_move_is_passed_up_by_every_command() {
 #[test]
 fn pause_stops_a_moving_pedestal() {
     let mut bench = Bench::grasped("PART", 1);
-    bench.world.pedestal.mishap = Some((PedestalVerb::Flip, Mishap::Hang));
+    bench.world.pedestal.mishap = Some((PedestalVerb::Flip, DeliveryFault::Hang));
     bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
     (0..100).for_each(|_| assert_eq!(bench.step().status.report, StatusReport::Executing));
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
@@ -472,7 +472,7 @@ fn pause_stops_a_moving_pedestal() {
 #[test]
 fn active_joystick_is_reported() {
     let mut bench = Bench::default();
-    bench.world.emove.mishap = Some((EmoveVerb::MovToLoc, Mishap::Special(Reason::JoystickOn)));
+    bench.world.emove.mishap = Some((EmoveVerb::MovToLoc, DeliveryFault::Special(Reason::JoystickOn)));
     let end = bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE");
     assert_eq!(end, (StatusReport::JoystickOn, Reason::JoystickOn));
     (0..20).for_each(|_| assert_eq!(bench.step().status.report, StatusReport::JoystickOn));

@@ -13,7 +13,7 @@ use interfaces::{
 use rcs_core::name::{Name10, Name16};
 
 use super::{
-    bench::{Bench, DONE, Mishap},
+    bench::{Bench, DONE, DeliveryFault},
     error,
 };
 
@@ -72,7 +72,7 @@ fn stop_ended_by_the_joystick_does_not_delay_the_next_command() {
     let mut bench = Bench::grasped("PART", 1);
     bench.command(SubtaskVerb::GotoDest, "", (0, 0), "SAFE");
     bench.wait(3);
-    bench.world.emove.mishap = Some((EmoveVerb::Pause, Mishap::Special(Reason::JoystickOn)));
+    bench.world.emove.mishap = Some((EmoveVerb::Pause, DeliveryFault::Special(Reason::JoystickOn)));
     bench.command(SubtaskVerb::GotoDest, "", (0, 0), "HOME");
     bench.until(|bench| bench.world.emove.outputs.status.report == StatusReport::JoystickOn);
     bench.world.emove.mishap = None;
@@ -347,7 +347,7 @@ fn handling(ignores: bool) {
             let get = matches!(verb, SubtaskVerb::GetObject | SubtaskVerb::AcquireTool);
             let object = if emove as u8 >= EmoveVerb::InsertTool as u8 { "TOOL-1" } else { "PART" };
             let mut bench = if get { Bench::default() } else { Bench::grasped(object, 1) };
-            bench.world.emove.mishap = Some((emove, Mishap::NoEffect));
+            bench.world.emove.mishap = Some((emove, DeliveryFault::NoEffect));
             bench.command(verb, object, (1, 1), "PFIXTURE");
             bench.until(|bench| bench.memory.subtask.emove.command == emove);
             bench.world.emove.outputs.status.held = holding(after);
@@ -374,7 +374,7 @@ fn held_object_is_grasped_again_in_its_grip() {
         let part = bench.data.object(&Name16::new("PART").unwrap(), grip).unwrap().0;
         assert_eq!((sent.grip, sent.object_parameters), (grip, part));
         // An interrupted release has left nothing between the fingers.
-        bench.world.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::Error(Reason::GraspMissed)));
+        bench.world.emove.mishap = Some((EmoveVerb::GraspObj, DeliveryFault::Error(Reason::GraspMissed)));
         let end = bench.run(SubtaskVerb::GetObject, "PART", (1, -1), "PFIXTURE");
         assert_eq!(end, error(Reason::GraspMissed));
     }
@@ -481,7 +481,7 @@ fn sectors_of_an_array_are_distinguished() {
     // An interrupted grasp has closed on something at the first sector.
     let mut bench = begun(EmoveVerb::GraspObj);
     bench.world.emove.outputs.status.held = Holding::Something;
-    bench.world.emove.mishap = Some((EmoveVerb::GraspObj, Mishap::NoEffect));
+    bench.world.emove.mishap = Some((EmoveVerb::GraspObj, DeliveryFault::NoEffect));
     bench.world.emove.received.clear();
     at_another_sector(&mut bench);
     assert_eq!(bench.finish(), error(Reason::UnknownHeld));
@@ -544,11 +544,11 @@ fn pause_waits_for_robot_and_pedestal() {
         bench
     };
     // The pedestal does not answer the pause; then it does, but E-move fails.
-    let mut bench = moving(PedestalVerb::Flip, Some((PedestalVerb::Pause, Mishap::Silence)));
+    let mut bench = moving(PedestalVerb::Flip, Some((PedestalVerb::Pause, DeliveryFault::Silence)));
     let end = bench.run(SubtaskVerb::Pause, "", (0, 0), "");
     assert_eq!(end, DONE);
     let mut bench = moving(PedestalVerb::Flip, None);
-    bench.world.emove.mishap = Some((EmoveVerb::Pause, Mishap::Error(Reason::LinkOff)));
+    bench.world.emove.mishap = Some((EmoveVerb::Pause, DeliveryFault::Error(Reason::LinkOff)));
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), error(Reason::LinkOff));
     // The next command waits for a replaced pause.
     let mut bench = moving(PedestalVerb::Flip, None);
@@ -678,11 +678,11 @@ fn manual_orders_are_refused_while_subtask_or_robot_use_the_pedestal() {
     let unknown = HandOrder { object: Some(Name16::clipped("BAR")), ..by_hand(PedestalVerb::Grip) };
     assert!(order(&mut bench, unknown).is_empty(), "no PED-PARA record");
     assert!(order(&mut bench, by_hand(PedestalVerb::Grip)).is_empty(), "no object");
-    bench.world.pedestal.mishap = Some((PedestalVerb::Grip, Mishap::Hang));
+    bench.world.pedestal.mishap = Some((PedestalVerb::Grip, DeliveryFault::Hang));
     assert_eq!(order(&mut bench, of_part(PedestalVerb::Grip)), ["GRIP"]);
     assert!(order(&mut bench, of_part(PedestalVerb::Grip)).is_empty(), "the hand moves");
     assert_eq!(order(&mut bench, by_hand(PedestalVerb::Pause)), ["PAUSE"]);
-    bench.world.pedestal.mishap = Some((PedestalVerb::Pause, Mishap::Silence));
+    bench.world.pedestal.mishap = Some((PedestalVerb::Pause, DeliveryFault::Silence));
     order(&mut bench, by_hand(PedestalVerb::Pause));
     let sent = bench.memory.subtask.pedestal.number;
     order(&mut bench, by_hand(PedestalVerb::Pause));

@@ -17,7 +17,7 @@ pub enum TakeOrder {
 
 /// The event after which CARRY is consulted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Occasion {
+pub enum LoadEvent {
     /// The update of the command is sent.
     Update,
     /// The command is finished.
@@ -61,7 +61,7 @@ pub struct NotedObject {
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct EndedCommand {
     /// The event.
-    pub occasion: Occasion,
+    pub occasion: LoadEvent,
     /// The command.
     pub verb: TaskVerb,
     /// The content of the gripper.
@@ -115,7 +115,7 @@ mod tests {
         for &carrying in Carrying::ALL {
             for &held in Held::ALL {
                 let load = EndedCommand {
-                    occasion: Occasion::Update,
+                    occasion: LoadEvent::Update,
                     verb: TaskVerb::Transfer,
                     held,
                     origin: TaskOrigin::Source,
@@ -132,7 +132,7 @@ mod tests {
         for &verb in TaskVerb::ALL {
             for &held in Held::ALL {
                 let load = EndedCommand {
-                    occasion: Occasion::Finish,
+                    occasion: LoadEvent::Finish,
                     verb,
                     held,
                     origin: TaskOrigin::Source,
@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn followed_object_keeps_its_serial_number_and_an_acquired_one_its_place() {
         let load = |origin, carrying| {
-            let (occasion, verb, held) = (Occasion::Finish, TaskVerb::Acquire, Held::Right);
+            let (occasion, verb, held) = (LoadEvent::Finish, TaskVerb::Acquire, Held::Right);
             carry((), &EndedCommand { occasion, verb, held, origin, carrying }).action
         };
         assert_eq!(load(TaskOrigin::Source, Carrying::Followed), Carry::KeepSerial);

@@ -29,8 +29,8 @@ use rcs_core::{
 
 use self::joystick::Control;
 pub use self::variables::{
-    DataBase, Destination, Ends, SiteData, Station, TaskDrum, TaskRecipient, TaskRegrip, TaskRoute, TaskTool,
-    ToolData, Update, WayOut,
+    DataBase, Destination, DrumDeparture, Ends, SiteData, Station, TaskDrum, TaskRecipient, TaskRegrip,
+    TaskRoute, TaskTool, ToolData, Update,
 };
 use super::{
     goals,
@@ -106,7 +106,7 @@ pub struct Preconditions {
     /// The regrip on the pedestal.
     pub regrip: TaskRegrip,
     /// The trajectory from the tool drum to the end-at location.
-    pub way_out: WayOut,
+    pub way_out: DrumDeparture,
     /// Result of the check against the task data.
     pub checked: Checked,
     /// Automatic or manual control.

@@ -87,7 +87,7 @@ pub enum TaskRoute {
 
 /// The trajectory from the tool drum to the end-at location of RELEASE-TOOL and REMOVE-TOOL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum WayOut {
+pub enum DrumDeparture {
     /// The task data have it, or the command needs none.
     Leads,
     /// The task data have no trajectory from the drum to that location.

@@ -26,7 +26,7 @@ use crate::{
 const WORK: u32 = 3; // ticks of a command
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Mishap {
+pub enum DeliveryFault {
     Error(Reason),
     /// No answer, not even an echo.
     Silence,
@@ -38,7 +38,7 @@ pub struct SubtaskDouble {
     last: SubtaskCommand,
     pub outputs: SubtaskOutputs,
     pub received: Vec<SubtaskCommand>,
-    pub mishap: Option<(SubtaskVerb, Mishap)>,
+    pub mishap: Option<(SubtaskVerb, DeliveryFault)>,
     pub joystick: bool,
     /// The robot is at no known place during a motion and after an interrupted one.
     pub loses_place: bool,
@@ -48,7 +48,7 @@ impl SubtaskDouble {
     fn step(&mut self, tick: Tick, command: &SubtaskCommand) {
         let mishap = self.mishap.filter(|(verb, _)| *verb == command.command).map(|(_, mishap)| mishap);
         self.outputs.header = Header { stamp: tick, ..Header::default() };
-        if mishap == Some(Mishap::Silence) {
+        if mishap == Some(DeliveryFault::Silence) {
             return;
         }
         let is_replaced = self.worker.is_working();
@@ -75,7 +75,7 @@ impl SubtaskDouble {
             }
             Turn::Ends => {
                 (status.report, status.reason) = match mishap {
-                    Some(Mishap::Error(reason)) => (StatusReport::Error, reason),
+                    Some(DeliveryFault::Error(reason)) => (StatusReport::Error, reason),
                     _ => (StatusReport::Done, Reason::None),
                 };
                 if mishap.is_none() {

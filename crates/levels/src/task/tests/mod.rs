@@ -12,7 +12,7 @@ use interfaces::{
 };
 use rcs_core::name::Name16;
 
-use self::bench::{Bench, FINISHED, Mishap};
+use self::bench::{Bench, DeliveryFault, FINISHED};
 use super::plan::{Plan, TaskVerb};
 use crate::subtask::tests::data::without;
 
@@ -322,9 +322,10 @@ fn failure_of_subtask_is_passed_up_by_every_command() {
         (ACQUIRE, SubtaskVerb::AcquireTool, 3, "", "HOME"),
         (REMOVE, SubtaskVerb::RemoveTool, 3, "TOOL-1", "TOOL-TRNS"),
     ] {
-        for (mishap, reason) in
-            [(Mishap::Error(Reason::NotAtGoal), Reason::NotAtGoal), (Mishap::Silence, Reason::NeighbourLost)]
-        {
+        for (mishap, reason) in [
+            (DeliveryFault::Error(Reason::NotAtGoal), Reason::NotAtGoal),
+            (DeliveryFault::Silence, Reason::NeighbourLost),
+        ] {
             let mut bench = Bench::default();
             bench.set(gripper, object, at);
             bench.world.subtask.mishap = Some((verb, mishap));

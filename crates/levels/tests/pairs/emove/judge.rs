@@ -11,13 +11,13 @@ use crate::{
     data::place,
     frame::{Event, Scene},
     robot::{self, is_at},
-    search::{Mishap, World as _, Wrong},
+    search::{DeliveryFault, World as _, Wrong},
 };
 
 impl<G: Fingered> Pair<G> {
     /// True if a held object is being released, or has been.
     const fn lets_go(&self) -> bool {
-        self.upper.state.held.is_letting_go(true)
+        self.upper.state.held.is_releasing(true)
     }
 
     /// `before` is the pair as the processes read it.
@@ -27,7 +27,7 @@ impl<G: Fingered> Pair<G> {
         event: &Event<<Around<G> as Scene>::Does>,
     ) -> Result<(), Wrong> {
         let open = G::are_open(before.scene.fingers);
-        if event.mishap == Mishap::RestartUpper && before.lets_go() && !self.lets_go() && !open {
+        if event.mishap == DeliveryFault::RestartUpper && before.lets_go() && !self.lets_go() && !open {
             return Err("a restarted E-move does not know that it releases");
         }
         let status = &self.upper.out.status;

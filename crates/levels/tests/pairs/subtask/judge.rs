@@ -11,7 +11,7 @@ use crate::{
     data::data,
     frame::Event,
     parts_gripper, robot,
-    search::{Mishap, Wrong},
+    search::{DeliveryFault, Wrong},
 };
 
 impl Pair {
@@ -65,7 +65,7 @@ impl Pair {
     /// when they close.
     fn judge_orders(&self, before: &Self, event: &Event<Does>) -> Result<(), Wrong> {
         let (now, then) = (&self.lower.out, &before.lower.out);
-        let fresh = event.told.is_some() || event.mishap != Mishap::None;
+        let fresh = event.told.is_some() || event.mishap != DeliveryFault::None;
         if self.orders_motion(before) && !before.scene.own && !fresh {
             return Err("an order of a command that was replaced");
         }

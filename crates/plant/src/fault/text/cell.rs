@@ -7,7 +7,7 @@ use rcs_core::tick::TICK_S;
 use super::{Entry, Value};
 use crate::{
     description::CellDescription,
-    fault::{Disorder, Fault, Mishap, What, When},
+    fault::{DeliveryFault, Disorder, Fault, What, When},
 };
 
 /// A kind of fault, and its keys except those for the time.
@@ -98,18 +98,21 @@ fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, B
                 form.device.clone().ok_or_else(|| entry.says("needs `device`: which of the mapping"))?;
             return Ok(What::FieldCut(device));
         }
-        "missing" => return Ok(What::Delivery(object()?, Mishap::Missing)),
+        "missing" => return Ok(What::Delivery(object()?, DeliveryFault::Missing)),
         "misplaced" => {
             let (x, y) = (aside("x", form.x)?, aside("y", form.y)?);
-            return Ok(What::Delivery(object()?, Mishap::Misplaced { x, y }));
+            return Ok(What::Delivery(object()?, DeliveryFault::Misplaced { x, y }));
         }
         "turned" => {
             form.angle.ok_or_else(|| entry.says("needs `angle`: how far, degrees"))?;
-            return Ok(What::Delivery(object()?, Mishap::Turned(angle()?)));
+            return Ok(What::Delivery(object()?, DeliveryFault::Turned(angle()?)));
         }
         "wrong-part" => {
             let other = form.part.as_ref().ok_or_else(|| entry.says("needs `part`: what comes instead"))?;
-            return Ok(What::Delivery(object()?, Mishap::WrongPart(part(entry, "part", other, cell)?)));
+            return Ok(What::Delivery(
+                object()?,
+                DeliveryFault::WrongPart(part(entry, "part", other, cell)?),
+            ));
         }
         _ => {
             let (x, y) = (aside("x", form.x)?, aside("y", form.y)?);
