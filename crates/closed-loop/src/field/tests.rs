@@ -145,7 +145,7 @@ fn end_makes_the_outputs_safe_and_says_whether_that_is_confirmed() {
     bench.step(&closing(), "pedestal");
     bench.field.end(&sensors(0));
     let events = bench.field.desk.take_events();
-    let confirmed: Vec<_> = events.iter().map(|event| (event.device.as_str(), event.what)).collect();
+    let confirmed: Vec<_> = events.iter().map(|event| (event.device.as_str(), event.what.clone())).collect();
     let ended = Happened::Ended;
     assert_eq!(confirmed, [("arm", ended(true)), ("fixture", ended(true)), ("pedestal", ended(false))]);
     let arm = bench.field.desk.mapping().device("arm").unwrap();
