@@ -87,7 +87,6 @@ fn ask(outcome: &Outcome, arguments: &[&str]) -> String {
     String::from_utf8_lossy(&output.expect("rcs-log can be started").stdout).into_owned()
 }
 
-/// The answer of `why` in the page of a run, as the browser reads it.
 fn of_page(outcome: &Outcome) -> Value {
     let path = outcome.log.with_extension("html");
     let written = Command::new(rcs_log()).arg("page").arg(&outcome.log).arg("-o").arg(&path).output();
@@ -101,7 +100,6 @@ fn of_page(outcome: &Outcome) -> Value {
     serde_json::from_reader(ZlibDecoder::new(why.as_slice())).expect("it is JSON")
 }
 
-/// The lines of the console's band in the picture of a failure.
 fn of_console(outcome: &Outcome, failure: &FailureResult, last: u64) -> Vec<String> {
     let tick = failure.account.first.shown_at().min(last).to_string();
     let mut console = Command::new(rcs_console());
@@ -110,7 +108,6 @@ fn of_console(outcome: &Outcome, failure: &FailureResult, last: u64) -> Vec<Stri
     String::from_utf8_lossy(&output.stdout).lines().skip(1).take(3).map(str::to_owned).collect()
 }
 
-/// Assert that the console shows the first failure as the state in its picture.
 fn assert_shown_by_console(what: &str, outcome: &Outcome, failure: &FailureResult, last: u64) {
     let band = of_console(outcome, failure, last);
     assert_eq!(band.len(), 3, "{what}: the console has no picture of the failure");

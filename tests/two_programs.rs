@@ -20,8 +20,7 @@ const JOB: &str = "** tray UNIT_1 4 LINKBAR1_BH\n\
                    == MOVE -- +0 -- 0 +0 HOME 0 -- 0\n\
                    ** vise open PFIXTURE\n";
 
-/// Ends the cell with the test.
-struct Cell(Child);
+struct Cell(Child); // ends the cell with the test
 
 impl Drop for Cell {
     fn drop(&mut self) {

@@ -8,25 +8,18 @@ use std::{
 
 use neighbours::line::Role;
 
-/// Greatest length of the name of a cell or of a certificate.
-const LONGEST: usize = 48;
+const LONGEST: usize = 48; // greatest length of the name of a cell or of a certificate
 
-/// Why a text on the command line cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
-    /// A name that cannot be a part of a key.
     #[error("expected a name of 1 to {LONGEST} letters, digits, -, _ and ., found {0:?}")]
     Name(String),
-    /// Not the endpoint of a gateway.
     #[error("expected tls/IP:PORT, as in tls/10.0.0.1:7447, found {0:?}")]
     Endpoint(String),
-    /// Not the address of a cell.
     #[error("expected CELL@tls/IP:PORT, as in t3@tls/10.0.0.1:7447, found {0:?}")]
     Cell(String),
-    /// Not a permission.
     #[error("expected ROLE=NAME or ROLE=NAME,NAME, as in workstation=hwsc-1, found {0:?}")]
     Allow(String),
-    /// A role that a gateway does not carry.
     #[error("expected {expected}, found {0:?}", expected = Right::words())]
     Role(String),
 }
@@ -36,7 +29,6 @@ pub enum AddressError {
 pub struct Name(String);
 
 impl Name {
-    /// The name as text.
     #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0
@@ -69,9 +61,6 @@ pub struct Endpoint(pub SocketAddr);
 
 impl Endpoint {
     /// Checks that this process can listen there.
-    ///
-    /// # Errors
-    /// Errors of the system.
     pub fn check_free(self) -> io::Result<()> {
         TcpListener::bind(self.0).map(drop)
     }
@@ -95,9 +84,7 @@ impl fmt::Display for Endpoint {
 /// A cell and the endpoint of its gateway: `CELL@tls/IP:PORT`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CellAddress {
-    /// Name of the cell.
     pub cell: Name,
-    /// Where its gateway listens.
     pub endpoint: Endpoint,
 }
 
@@ -116,13 +103,10 @@ impl fmt::Display for CellAddress {
     }
 }
 
-/// What a certificate may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Right {
-    /// Claim a role of the run.
-    Claim(Role),
-    /// Read the status of the cell.
-    Monitor,
+    Claim(Role), // claim a role of the run
+    Monitor, // read the status of the cell
 }
 
 impl Right {
@@ -146,12 +130,9 @@ impl FromStr for Right {
     }
 }
 
-/// A right and the certificates that have it: `ROLE=NAME[,NAME]...`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Allow {
-    /// The right.
     pub right: Right,
-    /// Common names of certificates.
     pub names: Vec<Name>,
 }
 

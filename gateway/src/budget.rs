@@ -2,7 +2,6 @@
 
 use std::time::{Duration, Instant};
 
-/// Events that are still allowed.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     burst: u32,
@@ -30,7 +29,6 @@ impl Budget {
         Some(std::mem::take(&mut self.omitted))
     }
 
-    /// Returns an event that was taken.
     pub fn give_back(&mut self) {
         self.left = self.left.saturating_add(1).min(self.burst);
     }

@@ -14,20 +14,14 @@ use crate::{
     keyspace::{ANY, CellKeys},
 };
 
-/// Time limit of a handshake, ms.
-const HANDSHAKE: u64 = 2000;
-/// Time limit for opening a connection, ms.
-const OPENING: u64 = 5000;
-/// Greatest number of connections.
-const SESSIONS: u64 = 32;
-/// Greatest length of a message, bytes.
-const MESSAGE: u64 = 64 * 1024;
+const HANDSHAKE: u64 = 2000; // time limit of a handshake, ms
+const OPENING: u64 = 5000; // time limit for opening a connection, ms
+const SESSIONS: u64 = 32; // greatest number of connections
+const MESSAGE: u64 = 64 * 1024; // greatest length of a message, bytes
 
-/// Rules of the access control for one certificate.
 #[derive(Default)]
 struct Rules(Vec<Value>);
 
-/// Direction of a message, seen from this process.
 #[derive(Clone, Copy, Debug)]
 enum Flow {
     Ingress,
@@ -84,7 +78,6 @@ impl Rules {
     }
 }
 
-/// The access control: the rules of each certificate, by its common name.
 fn access_control(certificates: &[(&Name, Rules)]) -> Value {
     let (mut rules, mut subjects, mut policies) = (Vec::new(), Vec::new(), Vec::new());
     for (name, own) in certificates {
@@ -139,10 +132,8 @@ fn common(mode: &str, keys: &Keys, access_control: &Value) -> Result<Config, zen
     Ok(config)
 }
 
-/// Configuration of a gateway: it listens at an endpoint, and connects to a router if there is one.
-///
-/// # Errors
-/// If Zenoh does not accept it.
+/// Configuration of a gateway: it listens at an endpoint, and connects to a router if there is one. Fails if Zenoh
+/// does not accept it.
 pub fn gateway(
     cell: &Name,
     endpoint: Endpoint,
@@ -182,16 +173,13 @@ pub fn gateway(
     Ok(config)
 }
 
-/// Listen at an endpoint.
 fn listen(config: &mut Config, endpoint: Endpoint) -> Result<(), zenoh::Error> {
     let limited = format!("{endpoint}#tls_handshake_timeout_ms={HANDSHAKE}");
     config.insert_json5("listen/endpoints", &json!([limited]).to_string())
 }
 
 /// Configuration of a router between gateways and monitors. Each cell writes its own status, and monitors read all.
-///
-/// # Errors
-/// If Zenoh does not accept it.
+/// Fails if Zenoh does not accept it.
 pub fn router(
     endpoint: Endpoint,
     keys: &Keys,
@@ -215,9 +203,7 @@ pub fn router(
 }
 
 /// Configuration of a monitor: a client of one router or gateway, or a peer of several gateways, which keeps trying.
-///
-/// # Errors
-/// If Zenoh does not accept it.
+/// Fails if Zenoh does not accept it.
 pub fn monitor(endpoints: &[Endpoint], keys: &Keys) -> Result<Config, zenoh::Error> {
     let is_client = endpoints.len() == 1;
     let mode = if is_client { "client" } else { "peer" };
@@ -232,10 +218,8 @@ pub fn monitor(endpoints: &[Endpoint], keys: &Keys) -> Result<Config, zenoh::Err
     Ok(config)
 }
 
-/// Configuration of a neighbour, which accepts samples from the gateway of its cell only.
-///
-/// # Errors
-/// If Zenoh does not accept it.
+/// Configuration of a neighbour, which accepts samples from the gateway of its cell only. Fails if Zenoh does not
+/// accept it.
 pub fn neighbour(cell: &Name, endpoint: Endpoint, role: Role, keys: &Keys) -> Result<Config, zenoh::Error> {
     let mut rules = Rules::default();
     rules.claim(&CellKeys::of(cell.as_str()), role, &keys.name, Flow::Egress);

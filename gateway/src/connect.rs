@@ -43,8 +43,7 @@ use crate::{
 
 /// Time limit of the answer to a claim: longer than the 10 s of the run.
 const ANSWER: Duration = Duration::from_secs(12);
-/// Greatest number of programs at the socket.
-const PROGRAMS: usize = 8;
+const PROGRAMS: usize = 8; // greatest number of programs at the socket
 
 /// What the threads of all connections share.
 struct Neighbourhood {
@@ -55,10 +54,7 @@ struct Neighbourhood {
     inboxes: Mutex<Vec<Arc<Inbox>>>,
 }
 
-/// Carries a role until a signal arrives.
-///
-/// # Errors
-/// [`Error`] if the keys, the socket or the options cannot be used.
+/// Carries a role until a signal arrives. Fails if the keys, the socket or the options cannot be used.
 pub fn connect(arguments: &ConnectArguments) -> Result<(), Error> {
     let ConnectArguments { cell, role, socket, keys, name } = arguments;
     let Right::Claim(role) = *role else { return Err(Error::Monitor(cell.clone())) };
@@ -88,13 +84,11 @@ pub fn connect(arguments: &ConnectArguments) -> Result<(), Error> {
     Ok(())
 }
 
-/// A claim at the gateway.
 struct Claim {
     clock: ClockKind,
     inbox: Arc<Inbox>,
     publisher: Publisher<'static>,
-    /// Fields are dropped in this order.
-    _token: LivelinessToken,
+    _token: LivelinessToken, // fields are dropped in this order
     _subscribers: [Subscriber<()>; 2],
 }
 
@@ -103,7 +97,6 @@ impl Neighbourhood {
         self.inboxes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Serve a program in a thread of its own.
     fn accept(self: &Arc<Self>, stream: UnixStream) {
         if self.open.fetch_add(1, Ordering::AcqRel) >= PROGRAMS {
             self.open.fetch_sub(1, Ordering::AcqRel);
@@ -124,7 +117,6 @@ impl Neighbourhood {
         }
     }
 
-    /// Serve a program from its connection to its end.
     fn serve(&self, stream: UnixStream) {
         let role = self.role;
         let session = match self.open_session() {
@@ -145,11 +137,9 @@ impl Neighbourhood {
         if let Some(end) = end {
             say!("{role} has disconnected: {end}");
         }
-        // If the network cannot be reached, the session need not be closed.
         let _ = session.close().wait();
     }
 
-    /// Connect to the gateway of the cell.
     fn open_session(&self) -> Result<Session, Refusal> {
         let Self { address, role, keys, .. } = self;
         let absent = |error: zenoh::Error| {
@@ -164,7 +154,6 @@ impl Neighbourhood {
         zenoh::open(config).wait().map_err(absent)
     }
 
-    /// Ask for a claim.
     fn claim(&self, session: &Session) -> Result<Claim, Refusal> {
         let Self { role, keys: Keys { name, .. }, address, .. } = self;
         let cell = CellKeys::of(address.cell.as_str());
@@ -235,7 +224,6 @@ impl Neighbourhood {
         }
     }
 
-    /// Carry a claim to its end.
     fn carry(&self, stream: UnixStream, claim: &Claim) -> Option<End> {
         let Claim { clock, inbox, publisher, .. } = claim;
         let (mut session, line) = match self.greet(stream, *clock) {
@@ -280,7 +268,6 @@ fn put(publisher: &Publisher<'_>, sample: Vec<u8>) {
     let _ = publisher.put(sample).wait();
 }
 
-/// Ask the gateway to open a claim; returns the clock of the run.
 fn ask(session: &Session, key: &str, id: &ClaimId, role: Role, name: &Name) -> Result<ClockKind, Refusal> {
     let failed = |error: zenoh::Error| Refusal::Absent(words(&error));
     let replies =

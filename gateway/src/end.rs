@@ -2,26 +2,19 @@
 
 use std::{fmt, time::Duration};
 
-/// How long the end of a connection may take.
-pub const CLOSING: Duration = Duration::from_secs(1);
+pub const CLOSING: Duration = Duration::from_secs(1); // how long the end of a connection may take
 /// How long a claim waits for the last sample after the token of the other side has gone.
 pub const GRACE: Duration = Duration::from_millis(100);
 
-/// Why a claim has ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum End {
     /// The program at the socket has ended it, with its reason; empty if it has only closed the socket.
     Local(String),
-    /// The other end has ended it, with its reason; empty if it has none.
-    Network(String),
-    /// The other end has broken the protocol.
-    Violation(String),
-    /// The other end has gone without a word.
-    Gone,
-    /// Nothing was received from the other end for too long.
-    Silent,
-    /// This process ends.
-    Stopped,
+    Network(String), // the other end has ended it, with its reason; empty if it has none
+    Violation(String), // the other end has broken the protocol
+    Gone, // the other end has gone without a word
+    Silent, // nothing was received from the other end for too long
+    Stopped, // this process ends
 }
 
 impl fmt::Display for End {

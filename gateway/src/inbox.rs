@@ -12,35 +12,27 @@ use std::{
 
 use rustix::event::{EventfdFlags, eventfd};
 
-/// Greatest number of bytes of an operator's lines that wait.
-const LINES: usize = 16 * 1024;
+const LINES: usize = 16 * 1024; // greatest number of bytes of an operator's lines that wait
 
-/// Contents of an inbox.
 #[derive(Debug, Default)]
 struct Contents {
     payloads: VecDeque<Vec<u8>>,
     bytes: usize,
-    /// The other side has gone without an end.
-    is_gone: bool,
-    /// Lines were lost, because the claim's thread did not take them.
-    has_overflown: bool,
+    is_gone: bool, // the other side has gone without an end
+    has_overflown: bool, // lines were lost, because the claim's thread did not take them
 }
 
-/// An inbox.
 #[derive(Debug)]
 pub struct Inbox {
-    /// Only the latest payload counts.
-    is_state: bool,
+    is_state: bool, // only the latest payload counts
     contents: Mutex<Contents>,
     wake: OwnedFd,
     is_stopped: AtomicBool,
 }
 
 impl Inbox {
-    /// An inbox for samples, of which only the latest counts (`is_state`), or for lines, which wait in order.
-    ///
-    /// # Errors
-    /// If the system has no descriptor left.
+    /// An inbox for samples, of which only the latest counts (`is_state`), or for lines, which wait in order. Fails if
+    /// the system has no descriptor left.
     pub fn new(is_state: bool) -> io::Result<Self> {
         let wake = eventfd(0, EventfdFlags::CLOEXEC | EventfdFlags::NONBLOCK)?;
         Ok(Self { is_state, contents: Mutex::default(), wake, is_stopped: AtomicBool::new(false) })
@@ -72,37 +64,31 @@ impl Inbox {
         self.wake();
     }
 
-    /// The other side has gone.
     pub fn set_gone(&self) {
         self.contents().is_gone = true;
         self.wake();
     }
 
-    /// This process ends.
     pub fn stop(&self) {
         self.is_stopped.store(true, Ordering::Release);
         self.wake();
     }
 
-    /// True if this process ends.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.is_stopped.load(Ordering::Acquire)
     }
 
-    /// True if the other side has gone.
     #[must_use]
     pub fn is_gone(&self) -> bool {
         self.contents().is_gone
     }
 
-    /// True if lines were lost.
     #[must_use]
     pub fn has_overflown(&self) -> bool {
         self.contents().has_overflown
     }
 
-    /// The next payload.
     #[must_use]
     pub fn take(&self) -> Option<Vec<u8>> {
         // It fails if nothing has woken the thread.

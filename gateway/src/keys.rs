@@ -14,74 +14,49 @@ use x509_parser::prelude::{FromDer as _, Pem, X509Certificate};
 
 use crate::address::Name;
 
-/// Certificates of the trusted authority.
-const AUTHORITY: &str = "ca.pem";
+const AUTHORITY: &str = "ca.pem"; // certificates of the trusted authority
 /// Name of the authority's private key without its extension: not that of a gateway or a neighbour.
 const AUTHORITY_KEY: &str = "ca";
-/// Mode bits of access for others than the owner.
-const OTHERS: u32 = 0o077;
+const OTHERS: u32 = 0o077; // mode bits of access for others than the owner
 
-/// Why keys cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum KeysError {
-    /// A file cannot be read.
     #[error("{}: {source}; tools/keys.sh makes keys and certificates", .path.display())]
     File {
-        /// The file.
         path: PathBuf,
-        /// Error of the system.
         source: io::Error,
     },
-    /// Others can read a private key.
     #[error("{}: other users can read this private key (mode {mode:o}): use chmod 600", .path.display())]
     Open {
-        /// The file.
         path: PathBuf,
-        /// Its mode.
         mode: u32,
     },
-    /// A private key of another user.
     #[error("{}: expected a private key of user {expected}, found one of user {found}", .path.display())]
     Owner {
-        /// The file.
         path: PathBuf,
-        /// This user.
         expected: u32,
-        /// Owner of the file.
         found: u32,
     },
-    /// Not a certificate.
     #[error("{}: expected a certificate in PEM, found something else", .0.display())]
     Certificate(PathBuf),
-    /// The certificate has another common name than its file.
     #[error("{}: expected a certificate with the common name {expected}, found {found:?}", .path.display())]
     CommonName {
-        /// The file.
         path: PathBuf,
-        /// Name of the file.
         expected: Name,
-        /// The common name.
         found: String,
     },
-    /// The certificate is not valid now.
     #[error("{}: valid from {from} until {until}, and not now: make a new certificate", .path.display())]
     Expired {
-        /// The file.
         path: PathBuf,
-        /// Start of its validity.
         from: String,
-        /// End of its validity.
         until: String,
     },
-    /// It is not clear which certificate is meant.
     #[error(
         "{}: expected one private key NAME.key, found {}; choose one with --name NAME",
         .directory.display(), list(.found)
     )]
     Which {
-        /// The directory.
         directory: PathBuf,
-        /// Names found.
         found: Vec<String>,
     },
 }
@@ -90,24 +65,16 @@ fn list(names: &[String]) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
-/// The files of one side of a connection.
 #[derive(Clone, Debug)]
 pub struct Keys {
-    /// Common name of the certificate.
     pub name: Name,
-    /// The authority.
     pub authority: PathBuf,
-    /// The certificate.
     pub certificate: PathBuf,
-    /// Its private key.
     pub key: PathBuf,
 }
 
 impl Keys {
     /// The keys of `name` in a directory, checked.
-    ///
-    /// # Errors
-    /// [`KeysError`].
     pub fn load(directory: &Path, name: &Name) -> Result<Self, KeysError> {
         let keys = Self {
             name: name.clone(),
@@ -122,17 +89,12 @@ impl Keys {
     }
 
     /// The keys of `name` in a directory, or the only ones.
-    ///
-    /// # Errors
-    /// [`KeysError`].
     pub fn named_or_only(directory: &Path, name: Option<&Name>) -> Result<Self, KeysError> {
         name.map_or_else(|| Self::only(directory), |name| Self::load(directory, name))
     }
 
-    /// The only keys in a directory, apart from those of the authority.
-    ///
-    /// # Errors
-    /// [`KeysError`]; [`KeysError::Which`] unless there is exactly one private key.
+    /// The only keys in a directory, apart from those of the authority. Errors: [`KeysError`]; [`KeysError::Which`]
+    /// unless there is exactly one private key.
     fn only(directory: &Path) -> Result<Self, KeysError> {
         let failed = |source| KeysError::File { path: directory.to_owned(), source };
         let mut found = Vec::new();
@@ -176,18 +138,13 @@ impl Keys {
     }
 }
 
-/// Who can read a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
-    /// This user only.
-    Private,
-    /// It belongs to another user.
-    OfUser(u32),
-    /// Other users can read it; its mode.
-    Open(u32),
+    Private, // this user only
+    OfUser(u32), // it belongs to another user
+    Open(u32), // other users can read it; its mode
 }
 
-/// Who can read a file with these metadata.
 #[must_use]
 pub fn access(found: &fs::Metadata) -> Access {
     match (found.uid(), found.mode()) {
@@ -197,7 +154,6 @@ pub fn access(found: &fs::Metadata) -> Access {
     }
 }
 
-/// Read the first certificate of a file and check it.
 fn certificate(
     path: &Path,
     check: impl FnOnce(&X509Certificate<'_>) -> Result<(), KeysError>,

@@ -16,10 +16,8 @@ use neighbours::line::Role;
 
 use crate::address::Name;
 
-/// Stands for any cell, claim or gateway in a key of the access control.
-pub const ANY: &str = "*";
+pub const ANY: &str = "*"; // stands for any cell, claim or gateway in a key of the access control
 
-/// The keys of a cell.
 #[derive(Clone, Debug)]
 pub struct CellKeys(String);
 
@@ -67,7 +65,6 @@ impl CellKeys {
     }
 }
 
-/// The keys of a claim.
 #[derive(Clone, Debug)]
 pub struct ClaimKeys(String);
 
@@ -91,32 +88,23 @@ impl ClaimKeys {
     }
 }
 
-/// Number of random bytes in a claim.
-const CLAIM: usize = 16;
+const CLAIM: usize = 16; // number of random bytes in a claim
 
-/// The identification of a claim: 128 random bits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ClaimId(String);
 
-/// 32 random hexadecimal digits: 128 bits.
-///
-/// # Errors
-/// If the system has no random bytes.
+/// 32 random hexadecimal digits: 128 bits. Fails if the system has no random bytes.
 pub fn random_digits() -> Result<String, getrandom::Error> {
     let mut random = [0; CLAIM];
     getrandom::fill(&mut random)?;
     Ok(random.iter().fold(String::new(), |mut text, byte| {
-        // Writing to a `String` does not fail.
         let _ = write!(text, "{byte:02x}");
         text
     }))
 }
 
 impl ClaimId {
-    /// A new claim.
-    ///
-    /// # Errors
-    /// If the system has no random bytes.
+    /// A new claim. Fails if the system has no random bytes.
     pub fn random() -> Result<Self, getrandom::Error> {
         random_digits().map(Self)
     }
@@ -129,7 +117,6 @@ impl ClaimId {
         (bytes.len() == CLAIM * 2 && bytes.iter().all(legal)).then(|| Self(text.to_owned()))
     }
 
-    /// The claim as text.
     #[must_use]
     pub fn as_str(&self) -> &str {
         &self.0

@@ -17,8 +17,7 @@ use crate::{
 
 /// Greatest length of a line, bytes; the run refuses a line that is longer than 260.
 const LONGEST: usize = 1024;
-/// Greatest length of an operator's name, bytes.
-const NAME: usize = 24;
+const NAME: usize = 24; // greatest length of an operator's name, bytes
 const HELLO: &str = "hello ";
 /// An operator that sends nothing for this time loses its claim, so that another one can command.
 const SILENCE: Duration = Duration::from_secs(10);

@@ -16,27 +16,19 @@ use tracing::{
 
 use crate::{budget::Budget, error::without_places};
 
-/// Number of lines that a source may write at once.
-const BURST: u32 = 10;
-/// Time after which a source may write one more line.
-const REFILL: Duration = Duration::from_secs(2);
-/// Greatest length of a line, characters.
-const LINE: usize = 400;
+const BURST: u32 = 10; // number of lines that a source may write at once
+const REFILL: Duration = Duration::from_secs(2); // time after which a source may write one more line
+const LINE: usize = 400; // greatest length of a line, characters
 
-/// Who writes a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// The gateway's own events.
-    Gateway,
-    /// Clients that are refused.
-    Refused,
-    /// Warnings of Zenoh, among them failed handshakes.
-    Zenoh,
+    Gateway, // the gateway's own events
+    Refused, // clients that are refused
+    Zenoh, // warnings of Zenoh, among them failed handshakes
 }
 
 static BUDGETS: Mutex<[Budget; 3]> = Mutex::new([Budget::new(BURST, REFILL); 3]);
 
-/// Writes a line, unless its source has written too many.
 pub fn write(source: Source, text: &dyn fmt::Display) {
     let omitted = {
         let mut budgets = BUDGETS.lock().unwrap_or_else(PoisonError::into_inner);
@@ -51,19 +43,16 @@ pub fn write(source: Source, text: &dyn fmt::Display) {
     }
 }
 
-/// Writes a line of the gateway.
 #[macro_export]
 macro_rules! say {
     ($($text:tt)*) => { $crate::log::write($crate::log::Source::Gateway, &::std::format_args!($($text)*)) };
 }
 
-/// Writes a line about a client that is refused.
 #[macro_export]
 macro_rules! say_refused {
     ($($text:tt)*) => { $crate::log::write($crate::log::Source::Refused, &::std::format_args!($($text)*)) };
 }
 
-/// Passes Zenoh's warnings and errors to the log.
 struct Warnings;
 
 struct Text(String);
@@ -71,7 +60,6 @@ struct Text(String);
 impl Visit for Text {
     fn record_debug(&mut self, field: &Field, value: &dyn fmt::Debug) {
         if field.name() == "message" {
-            // Writing to a `String` does not fail.
             let _ = write!(self.0, "{value:?}");
         }
     }
@@ -107,7 +95,6 @@ impl Subscriber for Warnings {
     fn exit(&self, _: &span::Id) {}
 }
 
-/// Passes Zenoh's warnings to the log from now on.
 pub fn hear_zenoh() {
     // It fails only if another subscriber was set before, and this program sets one.
     let _ = tracing::subscriber::set_global_default(Warnings);

@@ -44,8 +44,7 @@ const _: () = assert!(
     "build inside the repository, so that cargo reads .cargo/config.toml: it sets TLS_ACCEPT_THROTTLE_TIME=0"
 );
 
-/// Exit status of a usage error, or of keys and addresses that cannot be used.
-const UNUSABLE: u8 = 2;
+const UNUSABLE: u8 = 2; // exit status of a usage error, or of keys and addresses that cannot be used
 
 fn main() -> ExitCode {
     let cli = Cli::parse();

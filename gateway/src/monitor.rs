@@ -28,15 +28,11 @@ use crate::{
     signals,
 };
 
-/// Time between two pages.
-const PERIOD: Duration = Duration::from_secs(1);
+const PERIOD: Duration = Duration::from_secs(1); // time between two pages
 
-/// What is known of a cell.
 #[derive(Debug, Default)]
 struct Cell {
-    /// Its gateway is there.
     is_here: bool,
-    /// The last status of its run.
     status: Value,
 }
 
@@ -68,7 +64,6 @@ impl fmt::Display for Cell {
     }
 }
 
-/// All cells, by name.
 type Cells = Arc<Mutex<BTreeMap<String, Cell>>>;
 
 fn change(cells: &Cells, sample: &Sample, change: impl FnOnce(&mut Cell)) {
@@ -78,10 +73,8 @@ fn change(cells: &Cells, sample: &Sample, change: impl FnOnce(&mut Cell)) {
     }
 }
 
-/// Prints the cells once a second, until a signal arrives or as often as asked for.
-///
-/// # Errors
-/// [`Error`] if the keys cannot be used, or one endpoint was given and cannot be reached.
+/// Prints the cells once a second, until a signal arrives or as often as asked for. Fails if the keys cannot be used,
+/// or one endpoint was given and cannot be reached.
 pub fn monitor(arguments: &MonitorArguments) -> Result<(), Error> {
     let MonitorArguments { endpoints, keys, name, count } = arguments;
     let own = Keys::named_or_only(keys, name.as_ref())?;
@@ -125,7 +118,6 @@ pub fn monitor(arguments: &MonitorArguments) -> Result<(), Error> {
         }
         left -= u32::from(count.is_some());
     }
-    // If the network cannot be reached, the session need not be closed.
     let _ = session.close().wait();
     Ok(())
 }

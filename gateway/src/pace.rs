@@ -12,26 +12,20 @@ use crate::address::Name;
 
 /// Pause after the first refusal; it doubles with each further one.
 const SHORTEST: Duration = Duration::from_millis(100);
-/// Longest pause.
-const LONGEST: Duration = Duration::from_secs(2);
+const LONGEST: Duration = Duration::from_secs(2); // longest pause
 /// Refusals are forgotten after this time without a request.
 const FORGOTTEN: Duration = Duration::from_secs(10);
 /// Greatest number of requests of one certificate that wait for the run. The last of them waits for four of the longest
 /// pauses, which is less than the 12 s for which a client waits.
 const WAITING: u32 = 4;
 
-/// The requests of one certificate.
 #[derive(Clone, Copy, Debug)]
 struct Requests {
-    /// Number of requests that wait.
     waiting: u32,
-    /// Number of refusals in a row.
     refusals: u32,
-    /// The next request reaches the run at this time or later.
-    next: Instant,
+    next: Instant, // the next request reaches the run at this time or later
 }
 
-/// The requests of all certificates.
 #[derive(Debug, Default)]
 pub struct Pace(Mutex<BTreeMap<Name, Requests>>);
 

@@ -10,13 +10,10 @@ use crate::sample::plain;
 const REFUSED: &str = "refused ";
 const ABSENT: &str = "absent ";
 
-/// Why a claim was not opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// The run has refused it.
-    Refused(String),
-    /// There is no run, or no gateway.
-    Absent(String),
+    Refused(String), // the run has refused it
+    Absent(String), // there is no run, or no gateway
 }
 
 impl Refusal {
@@ -29,10 +26,7 @@ impl Refusal {
         }
     }
 
-    /// The clock in an answer.
-    ///
-    /// # Errors
-    /// If it is not a clock.
+    /// The clock in an answer. Fails if it is not a clock.
     pub fn clock(answer: &[u8]) -> Result<ClockKind, Self> {
         match answer {
             b"real" => Ok(ClockKind::Real),
@@ -44,7 +38,6 @@ impl Refusal {
         }
     }
 
-    /// As bytes of an answer.
     #[must_use]
     pub fn encode(&self) -> String {
         match self {

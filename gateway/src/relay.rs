@@ -29,27 +29,19 @@ use crate::{
 /// In fast clock the run waits for the answer to each pulse: a sample without one is repeated after this time.
 const REPEAT: Duration = Duration::from_secs(1);
 
-/// The program at the socket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The run: this process is the gateway.
-    Run,
-    /// A neighbour: this process is at the other machine.
-    Neighbour,
+    Run, // the run: this process is the gateway
+    Neighbour, // a neighbour: this process is at the other machine
 }
 
-/// A socket whose session is open, and its clock.
 #[derive(Debug)]
 pub struct Admitted {
-    /// The socket.
     pub line: Line,
-    /// The session.
     pub session: Session,
-    /// Clock of the run.
     pub clock: ClockKind,
 }
 
-/// The relay of a claim.
 pub struct Relay<'a> {
     line: Line,
     session: Session,
@@ -57,13 +49,10 @@ pub struct Relay<'a> {
     clock: ClockKind,
     inbox: &'a Inbox,
     publish: &'a mut dyn FnMut(&State, Option<&str>),
-    /// From the socket to the network.
-    outgoing: State,
-    /// From the network to the socket, as far as written.
-    passed: State,
+    outgoing: State, // from the socket to the network
+    passed: State, // from the network to the socket, as far as written
     published: Instant,
-    /// When the last sample was received, and when the other side has gone.
-    heard: Instant,
+    heard: Instant, // when the last sample was received, and when the other side has gone
     gone: Option<Instant>,
 }
 
@@ -129,7 +118,6 @@ impl<'a> Relay<'a> {
         if ready { self.read_line(Instant::now()) } else { Ok(()) }
     }
 
-    /// Pass on the latest sample.
     fn take_sample(&mut self, now: Instant) -> Result<(), End> {
         let Some(payload) = self.inbox.take() else { return Ok(()) };
         self.heard = now;
@@ -152,7 +140,6 @@ impl<'a> Relay<'a> {
         end.map_or(Ok(()), |reason| Err(End::Network(reason)))
     }
 
-    /// Read the socket, and publish a sample for each pulse.
     fn read_line(&mut self, now: Instant) -> Result<(), End> {
         let session = &mut self.session;
         let is_open = self.line.receive(|bytes| session.receive(bytes, now)).map_err(lost)?;
@@ -184,7 +171,6 @@ impl<'a> Relay<'a> {
         (self.publish)(&self.outgoing, None);
     }
 
-    /// Check the time limits.
     fn check(&mut self, now: Instant) -> Result<(), End> {
         self.session.check_time(now).map_err(ended)?;
         if self.inbox.is_stopped() {
@@ -206,7 +192,6 @@ impl<'a> Relay<'a> {
         Ok(())
     }
 
-    /// When [`Relay::check`] is due.
     fn deadline(&self) -> Option<Instant> {
         let gone = self.gone.map(|since| since + GRACE);
         let silent = self.is_bounded().then(|| self.heard + NEIGHBOUR_LIMIT);

@@ -5,10 +5,7 @@ use zenoh::Wait as _;
 
 use crate::{cli::RouterArguments, config, error::Error, keys::Keys, say, signals};
 
-/// Routes until a signal arrives.
-///
-/// # Errors
-/// [`Error`] if the keys or the endpoint cannot be used.
+/// Routes until a signal arrives. Fails if the keys or the endpoint cannot be used.
 pub fn route(arguments: &RouterArguments) -> Result<(), Error> {
     let RouterArguments { endpoint, keys, name, cells, monitors } = arguments;
     let own = Keys::named_or_only(keys, name.as_ref())?;
@@ -18,7 +15,6 @@ pub fn route(arguments: &RouterArguments) -> Result<(), Error> {
     let session = zenoh::open(config).wait().map_err(Error::zenoh)?;
     say!("router {} at {endpoint}", own.name);
     signals::wait(signals);
-    // If the network cannot be reached, the session need not be closed.
     let _ = session.close().wait();
     Ok(())
 }

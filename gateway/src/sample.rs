@@ -11,23 +11,17 @@ use neighbours::{
 /// Mailboxes of one direction, and the last pulse.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct State {
-    /// Their places, in the order of their role.
-    places: &'static [Place],
+    places: &'static [Place], // their places, in the order of their role
     mailboxes: Vec<Mailbox>,
-    /// Number of the last pulse; `None` before the first.
-    pub pulse: Option<u64>,
+    pub pulse: Option<u64>, // number of the last pulse; `None` before the first
 }
 
-/// Why bytes are not a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SampleError {
-    /// Not a frame.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// A frame that does not fit its mailbox.
     #[error(transparent)]
     Mailbox(#[from] MailboxError),
-    /// Bytes after the last frame.
     #[error("expected a whole frame, found {0} bytes of one")]
     Rest(usize),
 }
@@ -43,16 +37,12 @@ impl State {
         }
     }
 
-    /// The mailboxes.
     #[must_use]
     pub fn mailboxes(&self) -> &[Mailbox] {
         &self.mailboxes
     }
 
-    /// Store a mailbox.
-    ///
-    /// # Errors
-    /// If its bytes do not fit the mailbox, or it is not one of this direction.
+    /// Store a mailbox. Fails if its bytes do not fit the mailbox, or it is not one of this direction.
     pub fn receive(&mut self, address: u32, used: &[u8]) -> Result<(), SampleError> {
         let mailbox = self.mailboxes.iter_mut().find(|mailbox| mailbox.place().address == address);
         let mailbox = mailbox.ok_or(FrameError::Address { expected: self.places, found: address })?;
@@ -73,10 +63,8 @@ impl State {
         bytes
     }
 
-    /// Read a sample. Returns the reason of the end, if the claim ends.
-    ///
-    /// # Errors
-    /// [`SampleError`]; the state may have changed in part.
+    /// Read a sample. Returns the reason of the end, if the claim ends. Errors: [`SampleError`]; the state may have
+    /// changed in part.
     pub fn decode(&mut self, mut bytes: &[u8]) -> Result<Option<String>, SampleError> {
         let mut end = None;
         while !bytes.is_empty() {

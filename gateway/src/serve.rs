@@ -42,17 +42,14 @@ use crate::{
     status::Board,
 };
 
-/// Greatest number of claims that are open or being opened.
-const CLAIMS: usize = 64;
+const CLAIMS: usize = 64; // greatest number of claims that are open or being opened
 
-/// A request for a claim.
 struct Request {
     role: Role,
     name: Name,
     query: Query,
 }
 
-/// What the threads of all claims share.
 struct Gateway {
     cell: CellKeys,
     run: std::path::PathBuf,
@@ -63,10 +60,7 @@ struct Gateway {
     inboxes: Mutex<Vec<Arc<Inbox>>>,
 }
 
-/// Serves a cell until a signal arrives.
-///
-/// # Errors
-/// [`Error`] if the keys, the address or the options cannot be used.
+/// Serves a cell until a signal arrives. Fails if the keys, the address or the options cannot be used.
 pub fn serve(arguments: &ServeArguments) -> Result<(), Error> {
     let ServeArguments { cell, endpoint, run, router, keys, allow } = arguments;
     let own = Keys::load(keys, cell)?;
@@ -104,7 +98,6 @@ pub fn serve(arguments: &ServeArguments) -> Result<(), Error> {
     signals::wait(signals);
     gateway.stop();
     drop(token);
-    // If the network cannot be reached, the session need not be closed.
     let _ = gateway.session.close().wait();
     Ok(())
 }
@@ -120,7 +113,6 @@ impl Gateway {
         self.session.declare_queryable(self.cell.open(role, name)).callback(take).background().wait()
     }
 
-    /// Open each claim in a thread of its own.
     fn answer(self: Arc<Self>, asked: &Receiver<Request>) {
         for request in asked {
             if self.open.fetch_add(1, Ordering::AcqRel) >= CLAIMS {
@@ -136,7 +128,6 @@ impl Gateway {
         }
     }
 
-    /// Wait until all claims have ended.
     fn stop(&self) {
         self.inboxes().iter().for_each(|inbox| inbox.stop());
         let until = Instant::now() + crate::end::CLOSING;
@@ -149,7 +140,6 @@ impl Gateway {
         self.inboxes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Open a claim, and carry it to its end.
     fn claim(&self, request: Request) {
         let payload = request.query.payload().map(|payload| payload.to_bytes().into_owned());
         let Some(claim) = payload.as_deref().and_then(ClaimId::received) else {
@@ -245,7 +235,6 @@ impl Gateway {
             })
         } else {
             let mut publish = |state: &State, end: Option<&str>| {
-                // The same.
                 let _ = publisher.put(state.encode(end)).wait();
                 self.board.update(state);
             };

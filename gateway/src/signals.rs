@@ -8,14 +8,10 @@ use signal_hook::{
 };
 
 /// Receive signals from now on.
-///
-/// # Errors
-/// Errors of the system.
 pub fn receive() -> io::Result<Signals> {
     Signals::new([SIGINT, SIGTERM, SIGHUP])
 }
 
-/// Wait for the first signal.
 pub fn wait(mut signals: Signals) {
     signals.forever().next();
 }

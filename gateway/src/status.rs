@@ -26,10 +26,8 @@ use zenoh::{
 
 use crate::{keyspace::CellKeys, sample::State};
 
-/// Time between two messages about the run.
-const PERIOD: Duration = Duration::from_millis(200);
+const PERIOD: Duration = Duration::from_millis(200); // time between two messages about the run
 
-/// What is known of the run.
 #[derive(Debug, Default)]
 struct Known {
     tick: Option<u64>,
@@ -38,7 +36,6 @@ struct Known {
     mailboxes: BTreeMap<u32, Mailbox>,
 }
 
-/// Publishes the status of a cell until it is dropped.
 pub struct Board {
     session: Session,
     cell: CellKeys,
@@ -47,10 +44,7 @@ pub struct Board {
 }
 
 impl Board {
-    /// Publish from now on.
-    ///
-    /// # Errors
-    /// Errors of Zenoh.
+    /// Publish from now on. Errors: errors of Zenoh.
     pub fn start(session: &Session, cell: &CellKeys, run: PathBuf) -> Result<Self, zenoh::Error> {
         let known: Arc<Mutex<Known>> = Arc::default();
         let publisher = session
@@ -83,7 +77,6 @@ impl Board {
         is_socket(&self.run)
     }
 
-    /// A role is connected.
     pub fn connected(&self, role: Role, name: &str) {
         lock(&self.known).roles.insert(role.text(), name.to_owned());
     }
@@ -100,7 +93,6 @@ impl Board {
         }
     }
 
-    /// Mailboxes have passed.
     pub fn update(&self, state: &State) {
         let mut changed = Vec::new();
         {

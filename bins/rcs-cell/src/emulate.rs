@@ -26,9 +26,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::cli::EgmTarget;
 
-/// Longest time for which missed cycles are executed afterwards, ns.
-const MOST_BEHIND: u64 = 100_000_000;
-/// The commands that standard input accepts.
+const MOST_BEHIND: u64 = 100_000_000; // longest time for which missed cycles are executed afterwards, ns
 const HELP: &str = "estop      motors off, as by the emergency stop\n\
                     motors     motors on\n\
                     start      start the RAPID program: EGM begins where the robot is\n\
@@ -36,7 +34,6 @@ const HELP: &str = "estop      motors off, as by the emergency stop\n\
                     status     where the robot is, and what it does\n\
                     quit       end the program";
 
-/// The emulated robot with its socket.
 pub struct Emulation {
     robot: EgmRobot,
     socket: UdpSocket,
@@ -46,15 +43,11 @@ pub struct Emulation {
     start: Instant,
     received: u64,
     refused: u64,
-    /// State reported last on standard output.
-    said: Option<&'static str>,
+    said: Option<&'static str>, // state reported last on standard output
 }
 
 impl Emulation {
-    /// A robot that sends to the host of `target`.
-    ///
-    /// # Errors
-    /// A sentence for messages if the robot's file or a socket cannot be used.
+    /// Errors: a sentence, if the robot's file or a socket cannot be used.
     pub fn new(target: &EgmTarget, data: &std::path::Path) -> Result<Self, String> {
         let options: &EgmOptions = &target.0;
         let Peer::Udp(host) = options.peer else { return Err("--emulate needs a port to send to".into()) };
@@ -81,9 +74,6 @@ impl Emulation {
     }
 
     /// Runs until the command `quit` or a signal. `lines` are commands, and `observe` gets the robot after each cycle.
-    ///
-    /// # Errors
-    /// [`io::Error`] of the socket.
     pub fn run(
         &mut self,
         stop: &AtomicBool,

@@ -36,10 +36,8 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::{cli::Cli, emulate::Emulation, gateway::Gateway, pty::Pty, shell::Shell, station::Station};
 
-/// Exit status if the pseudo-terminal fails during the run.
-const FAILED: u8 = 1;
-/// Exit status if the program cannot start.
-const UNUSABLE: u8 = 2;
+const FAILED: u8 = 1; // exit status if the pseudo-terminal fails during the run
+const UNUSABLE: u8 = 2; // exit status if the program cannot start
 
 fn main() -> ExitCode {
     programs::shipped::carry();

@@ -40,8 +40,7 @@ use self::{camera::Camera, robot::Robot};
 use crate::{cli::Cli, emulate::typed};
 
 const TICK: Duration = Duration::from_millis(TICK_MS);
-/// Ticks that were missed while the system slept are left out.
-const MOST_BEHIND: u32 = 5;
+const MOST_BEHIND: u32 = 5; // ticks that were missed while the system slept are left out
 
 const HELP: &str = "tray UNIT SECTOR OBJECT [X Y ANGLE]   put a part into a tray; also vise and drum lines\n\
                     estop      press the emergency stop: safety circuit open, robot stopped\n\
@@ -52,7 +51,6 @@ const HELP: &str = "tray UNIT SECTOR OBJECT [X Y ANGLE]   put a part into a tray
                     status     connections, outputs, devices and parts\n\
                     quit       end the program";
 
-/// A coupler: its server, and what was last reported of it.
 struct Coupler {
     name: String,
     plan: Plan,
@@ -69,7 +67,6 @@ pub struct Station {
     store: Store,
     robot: Option<Robot>,
     camera: Option<Camera>,
-    /// The last position of the robot.
     plate: Plate,
     outputs: Vec<i64>,
     sensors: Vec<i64>,
@@ -78,9 +75,6 @@ pub struct Station {
 
 impl Station {
     /// Reads mapping and cell, and listens at the addresses of the mapping.
-    ///
-    /// # Errors
-    /// A sentence for messages.
     pub fn new(cli: &Cli, mapping: &Path) -> Result<Self, String> {
         let path = FIELDS.find(mapping, &cli.data).map_err(|error| error.to_string())?;
         let mapping = runtime::field::read(&path).map_err(|error| refused_mapping(&error))?;
@@ -110,10 +104,7 @@ impl Station {
         Ok(station)
     }
 
-    /// Runs until `quit` or a signal.
-    ///
-    /// # Errors
-    /// A sentence for messages if the robot's socket fails.
+    /// Runs until `quit` or a signal. Errors: a sentence for messages if the robot's socket fails.
     pub fn run(&mut self, stop: &AtomicBool) -> Result<(), String> {
         let listed: Vec<String> = self
             .couplers
@@ -204,7 +195,6 @@ impl Station {
         found.ok_or_else(|| format!("one of the couplers {} was expected, found {name}", known()))
     }
 
-    /// A tick of the cell, with the outputs that have arrived.
     fn tick(&mut self) {
         let images: Vec<OutWords> = self.couplers.iter_mut().map(Coupler::outputs).collect();
         let mut outputs = DeviceOutputs::default();
@@ -228,7 +218,6 @@ impl Station {
         self.ticks += 1;
     }
 
-    /// Puts what the sensors show into the registers of the couplers.
     fn show(&mut self, inputs: &interfaces::DeviceInputs) {
         let mut images = vec![InWords::ZERO; self.couplers.len()];
         self.devices.sense(&self.cell, &mut self.sensors);
@@ -239,7 +228,6 @@ impl Station {
         }
     }
 
-    /// Reports what has happened in the tick.
     fn tell(&mut self) {
         for coupler in &mut self.couplers {
             coupler.tell();
@@ -319,7 +307,6 @@ impl Coupler {
         self.server.with(|emulated| emulated.image(plan))
     }
 
-    /// Reports connections and the watchdog, if they have changed.
     fn tell(&mut self) {
         let (name, clients) = (&self.name, self.server.clients());
         if clients.connections != self.clients.connections {

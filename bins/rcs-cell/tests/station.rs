@@ -14,27 +14,21 @@ use std::{
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
-/// Generous time limit for a busy machine.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(60); // generous time limit for a busy machine
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data");
-/// The register of the outputs of the fixture, and two of their bits.
-const OUTPUTS: u16 = 0x800;
+const OUTPUTS: u16 = 0x800; // the register of the outputs of the fixture, and two of their bits
 const VISE_PARTIAL: u16 = 1 << 1;
 const VISE_CLOSE: u16 = 1 << 2;
-/// Bits of register 3 of its inputs.
-const OPENED: u16 = 1 << 0;
+const OPENED: u16 = 1 << 0; // bits of register 3 of its inputs
 const PARTIAL: u16 = 1 << 1;
 const CLAMPED: u16 = 1 << 2;
-/// The bit of `tray.UNIT_1.4` in register 4.
-const TRAY: u16 = 1 << 3;
+const TRAY: u16 = 1 << 3; // the bit of `tray.UNIT_1.4` in register 4
 
-/// The station with a mapping of free ports.
 struct Station {
     child: Child,
     console: ChildStdin,
     screen: Receiver<String>,
     fixture: SocketAddr,
-    /// The mapping, removed at the end.
     _directory: tempfile::TempDir,
 }
 
@@ -89,7 +83,6 @@ impl Drop for Station {
     }
 }
 
-/// A Modbus client.
 struct Client(TcpStream);
 
 impl Client {

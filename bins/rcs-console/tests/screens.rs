@@ -23,8 +23,7 @@ use ratatui::{Terminal, backend::TestBackend};
 use runtime::{Ending, LogTarget, Observer, Run, RunConfig};
 
 const PLAIN: Look = Look { colour: false, ascii: false };
-/// Tick in which E-move fails.
-const FAILURE: u64 = 623;
+const FAILURE: u64 = 623; // tick in which E-move fails
 
 struct Silent;
 
@@ -32,7 +31,6 @@ impl Observer for Silent {
     fn message(&mut self, _: &str) {}
 }
 
-/// The log of the run, written once for all tests.
 static LOG: LazyLock<(tempfile::TempDir, PathBuf)> = LazyLock::new(|| {
     let directory = tempfile::tempdir().expect("a directory can be made");
     let path = directory.path().join("missing.mcap");
@@ -49,7 +47,6 @@ fn log() -> Recorded {
     Recorded::open(&LOG.1).expect("the log can be read")
 }
 
-/// The log presented as a run in some state.
 struct As(Recorded, State);
 
 impl Source for As {
@@ -76,8 +73,7 @@ impl Source for As {
     }
 }
 
-/// A run with a simulated cell, whose robot controller has been started.
-struct Operated(As);
+struct Operated(As); // a run with a simulated cell, whose robot controller has been started
 
 impl Source for Operated {
     fn about(&self) -> About<'_> {

@@ -11,8 +11,7 @@ use rcs_core::tick::Tick;
 
 pub struct Stage {
     pub picture: Picture,
-    /// The simulated cell; `None` with a robot at a port.
-    pub view: Option<CellView>,
+    pub view: Option<CellView>, // the simulated cell; `None` with a robot at a port
     pub story: Story,
     pub state: State,
 }
@@ -35,7 +34,6 @@ impl Stage {
         }
     }
 
-    /// The view of the simulated cell.
     pub fn view(&mut self) -> &mut CellView {
         self.view.as_mut().expect("the cell is simulated")
     }

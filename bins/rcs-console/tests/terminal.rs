@@ -48,7 +48,6 @@ fn open_terminal() -> (OwnedFd, OwnedFd) {
     (master, slave)
 }
 
-/// Start the console on a terminal, in a directory, with an environment of its own.
 fn begin_console(
     arguments: &[&str],
     directory: &Path,
@@ -128,7 +127,6 @@ impl Terminal {
         self.keys.write_all(keys.as_bytes()).unwrap();
     }
 
-    /// Wait for the end; the modes of the terminal must be restored.
     fn status(&mut self) -> Option<i32> {
         let begun = Instant::now();
         let status = loop {
@@ -162,7 +160,6 @@ impl Terminal {
 
 impl Drop for Terminal {
     fn drop(&mut self) {
-        // After a successful test the program has already ended.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -550,7 +547,6 @@ fn closed_terminal_ends_the_console_at_once() {
     while child.try_wait().unwrap().is_none() && begun.elapsed() < PATIENCE {
         thread::sleep(Duration::from_millis(20));
     }
-    // A failed test must not leave the program running.
     let _ = child.kill();
     assert_eq!(child.wait().unwrap().code(), Some(1), "the console does not end");
     assert!(begun.elapsed() < Duration::from_secs(2), "{:?}", begun.elapsed());

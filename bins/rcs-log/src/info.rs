@@ -38,40 +38,31 @@ pub struct Arguments {
 pub struct Info {
     file: String,
     bytes: usize,
-    /// Facts that the run recorded at its start.
-    run: BTreeMap<String, String>,
+    run: BTreeMap<String, String>, // facts that the run recorded at its start
     ticks: u64,
     seconds: f64,
-    /// Number of ticks that the recorder dropped.
-    missing_ticks: u64,
+    missing_ticks: u64, // number of ticks that the recorder dropped
     /// Times of the controller; `None` if the log has none, as in a run with fast clock.
     times: Option<Times>,
-    /// True if the log has its end record; the log of a killed run has none.
-    complete: bool,
-    /// The reason why part of the file cannot be read.
-    damage: Option<String>,
+    complete: bool,         // the log has its end record; the log of a killed run has none
+    damage: Option<String>, // the reason why part of the file cannot be read
     result: Option<String>,
     digest: Option<String>,
     commands: Vec<CommandStory>,
     /// The last line of the job that was begun, as `line 5 of 13: ...`; `None` in the log of an older program.
     job: Option<String>,
     link: Link,
-    /// The first failure, its consequences, and what led there.
-    failure: Option<FailureResult>,
-    /// Facts that the run recorded at its end: parts, faults, verdicts.
-    facts: BTreeMap<String, String>,
-    /// Number of warnings and of errors on `/log`.
-    warnings: usize,
+    failure: Option<FailureResult>, // the first failure, its consequences, and what led there
+    facts: BTreeMap<String, String>, // facts that the run recorded at its end: parts, faults, verdicts
+    warnings: usize,                // number of warnings and of errors on `/log`
     errors: usize,
     attachments: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
 struct Times {
-    /// Number of skipped slots of the 40 ms grid.
-    overruns: u64,
-    /// Time of the controller part of a tick, us: median, 99th percentile, maximum.
-    p50_us: f64,
+    overruns: u64, // number of skipped slots of the 40 ms grid
+    p50_us: f64,   // time of the controller part of a tick, us: median, 99th percentile, maximum
     p99_us: f64,
     max_us: f64,
 }
@@ -111,17 +102,13 @@ impl From<&LinkCounters> for Link {
     }
 }
 
-/// Prints the summary of a log.
 pub fn info(arguments: &Arguments) -> Result<ExitCode, Error> {
     let log = open(&arguments.file)?;
     print(&summary(&log, &arguments.file)?, arguments.answer.json)?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// The summary of a log.
-///
-/// # Errors
-/// [`Error::Read`] if the log cannot be read, [`Error::Empty`] without a tick.
+/// The summary of a log. Errors: [`Error::Read`] if the log cannot be read, [`Error::Empty`] without a tick.
 pub fn summary(log: &Log, path: &Path) -> Result<Info, Error> {
     let (mut command_history, mut link) = (CommandHistory::new(tables::of_log(log).0), Link::default());
     let (mut ticks, mut missing, mut last) = (0, 0, Tick::BEFORE_START);
@@ -167,7 +154,6 @@ pub fn summary(log: &Log, path: &Path) -> Result<Info, Error> {
     })
 }
 
-/// The last line of the job that was begun.
 fn job(log: &Log) -> Option<String> {
     let changes = Changes::<JobState>::of(log);
     let JobState { index, lines, text, outcome, .. } = changes.last().filter(|job| job.lines > 0)?;

@@ -19,17 +19,12 @@ use crate::Error;
 /// A tick with its decoded records.
 pub struct Moment {
     pub tick: Tick,
-    /// Number of missing ticks before it.
-    pub gap: u64,
+    pub gap: u64, // number of missing ticks before it
     pub external: ExternalInputs,
-    /// Common memory at the start of the tick, which the processes read.
-    pub before: CommonMemory,
-    /// Common memory at the end of the tick, with the outputs of the processes.
-    pub after: CommonMemory,
-    /// Timing of the tick, if recorded.
-    pub timing: Option<Timing>,
-    /// Digest of the simulated cell before the tick, if recorded.
-    pub world: Option<u64>,
+    pub before: CommonMemory, // common memory at the start of the tick, which the processes read
+    pub after: CommonMemory,  // common memory at the end of the tick, with the outputs of the processes
+    pub timing: Option<Timing>, // timing of the tick, if recorded
+    pub world: Option<u64>,   // digest of the simulated cell before the tick, if recorded
 }
 
 /// Opens a log, which must have this program's layout.
@@ -81,15 +76,11 @@ fn decode(logged: &LoggedTick, before: CommonMemory) -> Result<Moment, ReadError
     })
 }
 
-/// A command of the workstation controller, as recorded.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CommandStory {
     pub text: String,
-    /// Tick in which Task took it.
-    pub first_tick: u64,
-    /// Tick in which it ended, or the last tick of the log.
-    pub last_tick: u64,
-    /// Its last status.
+    pub first_tick: u64, // tick in which Task took it
+    pub last_tick: u64,  // tick in which it ended, or the last tick of the log
     pub status: String,
     /// The unconfirmed goals of a finished command; empty if the sensors confirm all of them.
     #[serde(skip_serializing_if = "str::is_empty")]
@@ -97,7 +88,6 @@ pub struct CommandStory {
 }
 
 impl CommandStory {
-    /// The text after the command: `, unconfirmed: ...`, or nothing.
     #[must_use]
     pub fn remark(&self) -> String {
         if self.unconfirmed.is_empty() {
@@ -112,8 +102,7 @@ impl CommandStory {
 pub struct CommandHistory {
     /// Commands in order.
     pub commands: Vec<CommandStory>,
-    /// The reason why the last failed command failed.
-    pub failure: Option<Failure>,
+    pub failure: Option<Failure>, // the reason why the last failed command failed
     processes: Processes,
     watch: Box<Watch>,
     alarms: Alarms,
@@ -142,7 +131,6 @@ impl CommandHistory {
         }
     }
 
-    /// Records a tick.
     pub fn note(&mut self, moment: &Moment) {
         self.watch.observe(moment.tick, &moment.external, &moment.before, &moment.after);
         let status = &moment.after.task.status;
@@ -173,8 +161,7 @@ impl CommandHistory {
         self.last = Some(status.report);
     }
 
-    /// What went wrong in the run of the log: as the run has attached it at its end, or from the lines of a killed run.
-    /// `None` without a failure.
+    /// The failure as the run attached it at its end, or from the lines of a killed run. `None` without a failure.
     pub fn failed(&self, log: &Log) -> Option<FailureResult> {
         if let Some(failed) = FailureResult::of_log(log) {
             return failed;

@@ -10,8 +10,7 @@ use record::{
 };
 use serde_json::Value;
 
-/// Position of E-move in the ladder.
-const EMOVE: usize = 2;
+const EMOVE: usize = 2; // position of E-move in the ladder
 
 /// A log of one tick in which row 1 of E-move's first table fired, with these attachments.
 fn log(path: &Path, attachments: Vec<Attachment>) {

@@ -257,7 +257,6 @@ impl RunArguments {
 }
 
 impl CheckArguments {
-    /// To look at a data directory, and nothing else.
     #[must_use]
     pub fn of(data: &Path) -> Self {
         Self {

@@ -9,12 +9,9 @@ use executive::{
 use runtime::StartError;
 use sessions::network::PeerError;
 
-/// Exit status of a job that failed.
-pub const FAILED: u8 = 1;
-/// Exit status of a usage, configuration or data error.
-pub const UNUSABLE: u8 = 2;
-/// Exit status of a run that the user, an emergency stop or a lost link ended.
-pub const STOPPED: u8 = 3;
+pub const FAILED: u8 = 1; // exit status of a job that failed
+pub const UNUSABLE: u8 = 2; // exit status of a usage, configuration or data error
+pub const STOPPED: u8 = 3; // exit status of a run that the user, an emergency stop or a lost link ended
 
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
@@ -24,16 +21,12 @@ pub enum Error {
     SharedMemory(#[from] SharedMemoryError),
     #[error("nothing can be explained: {0}")]
     Explain(String),
-    /// The reach of a robot cannot be computed.
     #[error("the reach of the robot cannot be checked: {0}")]
     Reach(String),
-    /// A pose cannot be shown or written.
     #[error("the pose cannot be shown or written: {0}")]
     Pose(String),
-    /// `rcs-run new` cannot make the data.
     #[error("nothing is written: {0}")]
     New(String),
-    /// An output file cannot be written.
     #[error("{} cannot be written: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },
     #[error("{} cannot be read: {source}", path.display())]
@@ -44,34 +37,26 @@ pub enum Error {
          with --data built-in"
     )]
     BuiltInAtPort,
-    /// A word that is not a job, but nearly a subcommand.
     #[error("there is no job {word}: the nearest is the subcommand {subcommand}")]
     Subcommand { word: String, subcommand: String },
     #[error("the run cannot be forked: {0}")]
     Fork(String),
     #[error("{0}")]
     Campaign(String),
-    /// Couplers cannot be tested, released or calibrated.
     #[error("{0}")]
     Field(String),
-    /// The simulated robot has no port.
     #[error("the simulated robot has no line to test: name a port with --robot serial:PATH")]
     NoLinkToTest,
     #[error("the signal handler cannot be installed: {0}")]
     Signals(io::Error),
-    /// The buffers of a run cannot be read.
     #[error("the run cannot be read: {0}")]
     Unreadable(#[from] ReadError),
-    /// There are several runs, and the command names none.
     #[error("there are several runs, name one: {}", .0.join(", "))]
     WhichRun(Vec<String>),
-    /// A run does not accept the operator.
     #[error(transparent)]
     Operator(#[from] sessions::operator::ClientError),
-    /// A run at an address cannot be reached, or does not admit the operator.
     #[error(transparent)]
     Network(#[from] PeerError),
-    /// A board cannot take part in a run.
     #[error(transparent)]
     Board(#[from] MemberError),
     /// The console is not installed.

@@ -14,8 +14,7 @@ use crate::rcs_run::programs::start_of;
 const RERUN: &str = "rerun.sh";
 const LAYOUT: &str = "foxglove.json";
 
-/// The directory with the layouts of the viewers: that of the working directory, or of the sources of this
-/// program. `None` for a program that was installed without them.
+/// Layouts of the viewers in the working directory or this program's sources; `None` if installed without them.
 fn viewers() -> Option<PathBuf> {
     let here = PathBuf::from("viewers");
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?.join(&here);

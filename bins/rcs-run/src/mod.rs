@@ -45,10 +45,7 @@ use self::{
     error::Error,
 };
 
-/// Execute a command line. Returns the exit status.
-///
-/// # Errors
-/// [`Error`] with its exit status and reason, if the command could not begin or its answer could not be written.
+/// Fails if the command could not begin, or its answer could not be written.
 pub fn execute(cli: Cli) -> Result<ExitCode, Error> {
     match cli.command {
         None => run::run(&cli.run),

@@ -23,13 +23,9 @@ use crate::rcs_run::{
     progress::Progress,
 };
 
-/// Name of a run with a console, followed by the number of the process.
-const CONSOLE: &str = "console";
+const CONSOLE: &str = "console"; // name of a run with a console, followed by the number of the process
 
-/// Run a job and print its result.
-///
-/// # Errors
-/// [`Error`] if the run could not begin. A failed job is not an error but an exit status.
+/// Run a job and print its result. Fails if the run could not begin. A failed job is not an error but an exit status.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let stop = interruption()?;
     let on_stuck = Some(memory_fault::stuck as OnStuck);

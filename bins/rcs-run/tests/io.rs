@@ -17,8 +17,7 @@ use crate::common::{command, root};
 
 const ADDRESSES: [&str; 3] = ["127.0.0.1:21502", "127.0.0.1:21503", "127.0.0.1:21504"];
 const ARM: usize = 0;
-/// `grip.supply` in the first output word of the arm.
-const SUPPLY: u16 = 1 << 7;
+const SUPPLY: u16 = 1 << 7; // `grip.supply` in the first output word of the arm
 
 /// Three couplers, and the shipped mapping with their addresses.
 struct Cell {
@@ -48,7 +47,6 @@ impl Cell {
         self.directory.path().join("cell.toml")
     }
 
-    /// Run a command on the mapping, with answers to its questions.
     fn run(&self, words: &[&str], answers: &str) -> Output {
         let path = self.mapping();
         let mut arguments = vec![words[0], path.to_str().unwrap()];

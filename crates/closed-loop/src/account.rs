@@ -25,26 +25,18 @@ const WORKS_AGAIN: [&str; 2] = ["io.back", "io.released"];
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
     EmergencyStop,
-    /// The robot has lost hydraulic pressure or power.
-    Power,
-    /// The robot, or the part that it carries, has collided.
-    Collision,
-    /// A part or a gripper was dropped, lost or torn off.
-    Lost,
+    Power,     // the robot has lost hydraulic pressure or power
+    Collision, // the robot, or the part that it carries, has collided
+    Lost,      // a part or a gripper was dropped, lost or torn off
     Device,
-    /// The robot controller shows a warning or refuses a position.
-    RobotController,
+    RobotController, // the robot controller shows a warning or refuses a position
     Link,
     OffPath,
     Process,
-    /// A command was reported as finished, but its goal was not reached.
-    FalseReport,
-    /// A part is not at the place where the job should have left it.
-    Misplaced,
-    /// The job could not continue: its own check failed, or the operator was missing.
-    Job,
-    /// The program, a board or the clock failed.
-    Program,
+    FalseReport, // a command was reported as finished, but its goal was not reached
+    Misplaced,   // a part is not at the place where the job should have left it
+    Job,         // the job could not continue: its own check failed, or the operator was missing
+    Program,     // the program, a board or the clock failed
 }
 
 impl Kind {
@@ -68,8 +60,7 @@ impl Kind {
         }
     }
 
-    /// The action of a person before the job can continue, if the kind alone gives it. The reason of a process has its
-    /// own remedy.
+    /// The operator's remedy, if the kind alone gives it; the reason of a process has its own.
     #[must_use]
     pub const fn remedy(self) -> Option<&'static str> {
         match self {
@@ -130,10 +121,8 @@ impl Failure {
 /// Key of the account in the metadata at the end of the log of an older program.
 const FACT: &str = "account";
 
-/// The first failure of a run, and those that followed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Account {
-    /// The cause in the world.
     #[serde(flatten)]
     pub first: Failure,
     #[serde(default)]
@@ -168,8 +157,7 @@ impl Account {
         facts.iter().filter(|(key, _)| *key != FACT)
     }
 
-    /// The account in the metadata at the end of a log: `Some(None)` for a successful run, `None` if the metadata
-    /// contain neither account nor success.
+    /// The account at the end of a log: `Some(None)` for a successful run, `None` without account and success.
     #[must_use]
     pub fn of_facts(facts: &BTreeMap<String, String>) -> Option<Option<Self>> {
         match facts.get(FACT) {
@@ -205,7 +193,6 @@ impl Account {
     }
 }
 
-/// The first failure, then each later one with its tick.
 impl fmt::Display for Account {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.first.text)?;
@@ -226,8 +213,7 @@ pub fn has_worked(before: &HwsStatus, now: &HwsStatus) -> bool {
 #[derive(Clone, Debug, Default)]
 pub struct Alarms {
     failures: Vec<Failure>,
-    /// The last tick in which a command other than PAUSE finished.
-    worked: Tick,
+    worked: Tick, // the last tick in which a command other than PAUSE finished
 }
 
 impl Alarms {

@@ -19,10 +19,7 @@ pub trait Levels<Data: ?Sized> {
 
     /// One tick of all processes: read `before` and `external`, write all of `after`, and call `observe` after each
     /// stage like [`Ladder::step_observed`](levels::ladder::Ladder::step_observed). Time outside the stages is
-    /// attributed to the executive.
-    ///
-    /// # Errors
-    /// If external processes did not take part. The caller must then stop.
+    /// attributed to the executive. Fails if external processes did not take part. The caller must then stop.
     fn step(
         &mut self,
         tick: Tick,
@@ -106,10 +103,7 @@ impl<L> Course<L> {
         Ok(())
     }
 
-    /// Run the next tick and sum it up.
-    ///
-    /// # Errors
-    /// Those of [`step`](Self::step).
+    /// Run the next tick and sum it up. Errors: those of [`step`](Self::step).
     pub fn advance<Data: ?Sized>(&mut self, external: &ExternalInputs, data: &Data) -> Result<(), L::Error>
     where
         L: Levels<Data>,
@@ -171,7 +165,6 @@ impl<L> Course<L> {
     }
 }
 
-/// The halves that a tick reads and writes.
 const fn of_tick(halves: &mut [CommonMemory; 2], tick: Tick) -> (&CommonMemory, &mut CommonMemory) {
     let (before, after) = of_tick_mut(halves, tick);
     (before, after)

@@ -16,8 +16,7 @@ use plant::{
 };
 use taskdata::load::job::{Drum, Workstation as Action};
 
-/// The words of a line that devices can execute: without the place of a part in a tray, which is vision's affair.
-/// `None` for a line that no device executes.
+/// Omits the place of a part in a tray, which is vision's affair. `None` if no device executes the line.
 #[must_use]
 pub fn device_line(action: &Action) -> Option<String> {
     Some(match action {
@@ -116,23 +115,18 @@ pub fn programs(mapping: &Mapping) -> Programs {
     programs
 }
 
-/// The simulated devices with the points of a mapping.
-///
-/// # Errors
-/// [`DeviceError`] for a point or a program of a device that the cell does not have.
+/// Fails for a point or a program of a device that the cell does not have.
 pub fn simulated(mapping: &Mapping, cell: &CellDescription) -> Result<Devices, DeviceError> {
     let outputs = mapping.outputs.iter().map(|point| point.name.as_str());
     let inputs = mapping.inputs.iter().map(|point| point.name.as_str());
     Devices::new(cell, programs(mapping), outputs, inputs)
 }
 
-/// The lines of a job that devices execute, and the words between them and the couplers.
 #[derive(Clone, Debug)]
 pub struct StationLines {
     mapping: Arc<Mapping>,
     lines: Lines,
-    /// Line whose request to the operator was reported.
-    asked: bool,
+    asked: bool, // line whose request to the operator was reported
 }
 
 impl StationLines {
@@ -149,9 +143,6 @@ impl StationLines {
     }
 
     /// Begins a line.
-    ///
-    /// # Errors
-    /// A sentence with the reason.
     pub fn begin(&mut self, action: &Action) -> Result<(), String> {
         if let Some(refusal) = refusal(&self.mapping, action) {
             return Err(refusal);
@@ -161,7 +152,6 @@ impl StationLines {
         self.lines.begin(&self.mapping, &line).map_err(|failure| failure.to_string())
     }
 
-    /// Carries out one tick of the present line.
     pub fn step(&mut self, devices: &[Seen]) {
         self.lines.step(&self.mapping, devices);
     }

@@ -24,10 +24,8 @@ pub struct Failure {
     pub kind: Kind,
     /// The manual's name of the process that reports the reason; `cell` and `T3` for events in the cell.
     pub process: String,
-    /// Its decision table, if one decided.
-    pub table: Option<String>,
-    /// The row that fired, from 1.
-    pub row: Option<u8>,
+    pub table: Option<String>, // its decision table, if one decided
+    pub row: Option<u8>,       // the row that fired, from 1
     pub text: String,
     /// True if the link to the robot or to its devices is lost, or they were stopped, which is not a failure of the job.
     #[serde(skip)]
@@ -81,8 +79,7 @@ impl Default for Watch {
 }
 
 impl Watch {
-    /// Observe a tick: its external inputs, the buffers that the processes read, and those that they wrote. Does not
-    /// allocate.
+    /// Observes the external inputs and the buffers before and after a tick. Does not allocate.
     pub fn observe(
         &mut self,
         tick: Tick,

@@ -31,25 +31,19 @@ pub use self::{
     event::{FieldEvent, Happened},
 };
 
-/// Simulated time before the first tick, for the set-up of the devices, ms.
-const SET_UP_MS: u64 = 2000;
-/// Times of the two exchanges after a slot, ms.
-const EXCHANGES_MS: [u64; 2] = [1, TICK_MS - 8];
-/// Answer timeout, ms; also the duration of an exchange over a cut connection.
-const TIMEOUT_MS: u16 = 6;
+const SET_UP_MS: u64 = 2000; // simulated time before the first tick, for the set-up of the devices, ms
+const EXCHANGES_MS: [u64; 2] = [1, TICK_MS - 8]; // times of the two exchanges after a slot, ms
+const TIMEOUT_MS: u16 = 6; // answer timeout, ms; also the duration of an exchange over a cut connection
 /// Times at which the outputs of the end are written and read back: longer than the time limit of a session.
 const ENDING_STEP_MS: usize = 20;
 const ENDING_STEPS: usize = 12;
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FieldError {
-    /// The mapping is invalid for this device.
     #[error("{device}: {source}")]
     Plan { device: String, source: PlanError },
-    /// Only couplers with process data are emulated.
     #[error("{device}: only devices of the kind bk9000 with registers can be simulated")]
     NotEmulated { device: String },
-    /// The cell has no device for a point of the mapping.
     #[error(transparent)]
     Devices(#[from] DeviceError),
     #[error("{device} is not ready after its set-up")]
@@ -59,10 +53,8 @@ pub enum FieldError {
 /// The couplers of a run.
 #[derive(Clone, Debug)]
 pub enum Field {
-    /// Emulated couplers, in simulated time.
-    Simulated(SimulatedField),
-    /// Couplers outside of the loop, whose owner passes orders and reports on.
-    External(Desk),
+    Simulated(SimulatedField), // emulated couplers, in simulated time
+    External(Desk),            // couplers outside of the loop, whose owner passes orders and reports on
 }
 
 impl Field {
@@ -82,7 +74,6 @@ impl Field {
     }
 }
 
-/// The couplers of a mapping, in simulated time.
 #[derive(Clone, Debug)]
 pub struct SimulatedField {
     desk: Desk,
@@ -96,10 +87,7 @@ pub struct SimulatedField {
 }
 
 impl SimulatedField {
-    /// Set up the devices of a mapping whose sensors show these inputs.
-    ///
-    /// # Errors
-    /// [`FieldError`] if a device cannot be simulated.
+    /// Set up the devices of a mapping whose sensors show these inputs. Fails if a device cannot be simulated.
     pub fn new(mapping: Arc<Mapping>, inputs: &DeviceInputs) -> Result<Self, FieldError> {
         let simulated = mapping.devices.iter().map(simulated).collect::<Result<_, _>>()?;
         let arrived = vec![0; mapping.outputs.len()];
@@ -131,8 +119,7 @@ impl SimulatedField {
         self
     }
 
-    /// Move the devices of the workstation by the outputs that have arrived at them. Call it between
-    /// [`write`](Self::write) and the tick of the cell.
+    /// Uses the outputs that have arrived. Call it between [`write`](Self::write) and the tick of the cell.
     pub fn move_devices(&mut self, cell: &mut Cell) {
         let images = self.images();
         self.desk.mapping().spread_station(&images, &mut self.arrived);
@@ -153,7 +140,6 @@ impl SimulatedField {
         self.devices.as_mut().map(|devices| devices.messages()).unwrap_or_default()
     }
 
-    /// The outputs of the couplers.
     fn images(&self) -> Vec<OutWords> {
         let devices = &self.desk.mapping().devices;
         let couplers = self.simulated.iter().zip(devices);
@@ -201,7 +187,6 @@ impl SimulatedField {
         self.desk.note_changes(inputs);
     }
 
-    /// Copy the sensors into the registers of the couplers.
     fn sense(&mut self, inputs: &DeviceInputs) {
         let mapping = self.desk.mapping();
         let mut images = vec![InWords::ZERO; self.simulated.len()];

@@ -13,13 +13,10 @@ use taskdata::load::{Store, job::Reload};
 #[derive(Clone)]
 pub struct Generations {
     first: Arc<Store>,
-    /// Generation 1 and later ones, each based on its predecessor.
-    reloads: Arc<Vec<Reload>>,
+    reloads: Arc<Vec<Reload>>, // generation 1 and later ones, each based on its predecessor
     number: u32,
-    /// Number of generations that do not originate in a line of the job.
-    inserted: u32,
-    /// Generations that wait for the end of a command.
-    waiting: VecDeque<u32>,
+    inserted: u32,          // number of generations that do not originate in a line of the job
+    waiting: VecDeque<u32>, // generations that wait for the end of a command
 }
 
 impl Generations {

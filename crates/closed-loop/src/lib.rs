@@ -74,23 +74,17 @@ pub struct ClosedLoop<L = Present, W: World = SimulatedWorkstation> {
     external: ExternalInputs,
     inputs: DeviceInputs,
     gate: Gate,
-    /// The Data System; `None` for an external one.
-    books: Option<DataSystem<InMemory>>,
-    /// The line to the robot and the judges of the cell.
+    books: Option<DataSystem<InMemory>>, // the Data System; `None` for an external one
     checks: W::Checks,
-    /// The cell and the other equipment of the workstation.
-    pub workstation: W,
+    pub workstation: W, // the cell and the other equipment of the workstation
 }
 
-/// View of a command source, or an operator, after a tick.
 pub struct Desk<'a, W = SimulatedWorkstation> {
     pub tick: Tick,
     pub memory: &'a CommonMemory,
     pub inputs: &'a DeviceInputs,
-    /// Task's end of the mailboxes; its status box contains the status of this tick.
-    pub gate: &'a mut Gate,
-    /// The cell and the other equipment of the workstation.
-    pub workstation: &'a mut W,
+    pub gate: &'a mut Gate, // Task's end of the mailboxes; its status box contains the status of this tick
+    pub workstation: &'a mut W, // the cell and the other equipment of the workstation
     pub generations: &'a Generations,
 }
 
@@ -144,10 +138,7 @@ impl<L, W: World> ClosedLoop<L, W> {
         }
     }
 
-    /// First part of a tick: run the control processes. Does not allocate.
-    ///
-    /// # Errors
-    /// Errors of the levels. The tick is then void.
+    /// First part of a tick: the control processes. Does not allocate. After an error of the levels the tick is void.
     pub fn decide<E>(&mut self, given: &Given) -> Result<(), E>
     where
         L: for<'a> Levels<TaskData<'a>, Error = E>,
@@ -158,10 +149,8 @@ impl<L, W: World> ClosedLoop<L, W> {
         })
     }
 
-    /// Like [`decide`](Self::decide), with a function that advances the course by a tick and sums it up.
-    ///
-    /// # Errors
-    /// Errors of that function. The tick is then void and can be decided again.
+    /// Like [`decide`](Self::decide), with a function that advances the course by a tick and sums it up. Errors:
+    /// errors of that function. The tick is then void and can be decided again.
     pub fn decide_with<E>(
         &mut self,
         given: &Given,
@@ -176,8 +165,7 @@ impl<L, W: World> ClosedLoop<L, W> {
         act(&mut self.course, &self.generations.current().view())
     }
 
-    /// The device outputs of the last tick. A lost T3 Interface sends its last frame only once. All outputs are zero
-    /// while no process runs, as in a controller without power.
+    /// Those of the last tick; all zero while no process runs. A lost T3 Interface sends its last frame only once.
     #[must_use]
     pub fn outputs(&self) -> DeviceOutputs {
         let memory = self.course.memory();
@@ -232,8 +220,7 @@ impl<L, W: World> ClosedLoop<L, W> {
         }
     }
 
-    /// End of a tick: put loaded task data into effect if no command is being executed. Returns true if the
-    /// generation has changed.
+    /// Puts loaded task data into effect if no command is being executed. Returns true if the generation has changed.
     pub fn reload(&mut self) -> bool {
         for number in self.workstation.loads() {
             self.generations.propose(number);
@@ -262,7 +249,6 @@ impl<L, W: World> ClosedLoop<L, W> {
         &mut self.course
     }
 
-    /// The digest of all buffers of all ticks so far.
     #[must_use]
     pub const fn digest(&self) -> Digest {
         self.course.digest()
@@ -297,13 +283,11 @@ impl<L, W: World> ClosedLoop<L, W> {
         &mut self.generations
     }
 
-    /// The Data System, unless it is external.
     #[must_use]
     pub const fn books(&self) -> Option<&DataSystem<InMemory>> {
         self.books.as_ref()
     }
 
-    /// For its refusals and the list of its items.
     pub const fn books_mut(&mut self) -> Option<&mut DataSystem<InMemory>> {
         self.books.as_mut()
     }

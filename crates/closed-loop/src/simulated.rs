@@ -17,17 +17,13 @@ use crate::{
     workstation::SimulatedWorkstation,
 };
 
-/// Events in the cell in a tick.
 #[derive(Debug, Default)]
 pub struct Settled {
     /// Events of the cell, without permitted contacts; forbidden ones are in `contacts`.
     pub events: Vec<CellEvent>,
-    /// Collisions that have begun or ended.
-    pub contacts: Vec<ContactEvent>,
-    /// False confirmations.
-    pub untrue: Vec<Confirmation>,
-    /// Events of the couplers between controller and cell.
-    pub field: Vec<FieldEvent>,
+    pub contacts: Vec<ContactEvent>, // collisions that have begun or ended
+    pub untrue: Vec<Confirmation>,   // false confirmations
+    pub field: Vec<FieldEvent>,      // events of the couplers between controller and cell
 }
 
 #[derive(Clone)]
@@ -130,8 +126,7 @@ impl<L> ClosedLoop<L> {
         self
     }
 
-    /// The outputs of the last tick as orders for couplers outside of the loop, in the order of the devices. Does not
-    /// allocate.
+    /// Orders of the last tick, in the order of the devices. Does not allocate.
     pub fn coupler_orders(&mut self) -> impl Iterator<Item = &Orders> {
         let (tick, outputs) = (self.course.tick(), self.outputs());
         let desk = match self.workstation.field.as_deref_mut() {
@@ -144,8 +139,7 @@ impl<L> ClosedLoop<L> {
         desk.into_iter().flat_map(Desk::orders)
     }
 
-    /// The reports of couplers outside of the loop before a tick, at the time `now`, ns: they determine its inputs.
-    /// Does not allocate.
+    /// `now` in ns. The reports determine the inputs of the tick. Does not allocate.
     pub fn observe_couplers(&mut self, now: u64, reports: impl Iterator<Item = Report>) {
         if let Some(Field::External(desk)) = self.workstation.field.as_deref_mut() {
             desk.observe(now, reports);
@@ -170,8 +164,7 @@ impl<L> ClosedLoop<L> {
         settled
     }
 
-    /// Note that the run is resumed: its contacts are attributed to the command in the buffers, and the present ones
-    /// are no news.
+    /// Contacts belong to the command in the buffers; the present ones are no news.
     pub fn note_resumed(&mut self) {
         let contacts = &mut self.checks.contacts;
         contacts.commands(self.course.memory());

@@ -24,8 +24,7 @@ const SAFETY_OPEN: &str = "the safety circuit is open: safety.ok is 0";
 #[derive(Clone, Debug)]
 pub struct Emergency {
     pub tick: Tick,
-    /// Cause, position, and the state of the arm.
-    pub droop: Droop,
+    pub droop: Droop, // cause, position, and the state of the arm
 }
 
 #[derive(Clone)]
@@ -35,21 +34,15 @@ pub struct SimulatedWorkstation {
     state: WorkstationState,
 }
 
-/// State of a workstation in addition to its cell.
 #[derive(Clone, Debug, Default)]
 pub struct WorkstationState {
     fault: Option<String>,
-    /// True with an external robot, whose panel is out of reach.
-    robot_elsewhere: bool,
-    /// True if a workstation controller can connect, so that the job can hand over to it.
-    hands_over: bool,
+    robot_elsewhere: bool, // true with an external robot, whose panel is out of reach
+    hands_over: bool,      // a workstation controller can connect, so that the job can hand over to it
     emergency: Option<Emergency>,
-    /// True if the arm had no pressure after the last tick.
-    stopped: bool,
-    /// Reloads requested since the last call of `loads`.
-    loads: Vec<u32>,
-    /// Parts that an action has put into the cell since the last call of `delivered`.
-    delivered: Vec<u32>,
+    stopped: bool,       // the arm had no pressure after the last tick
+    loads: Vec<u32>,     // reloads requested since the last call of `loads`
+    delivered: Vec<u32>, // parts that an action has put into the cell since the last call of `delivered`
 }
 
 impl SimulatedWorkstation {
@@ -61,12 +54,10 @@ impl SimulatedWorkstation {
         &self.state
     }
 
-    /// Note that the cell follows an external robot, whose controller is out of reach for lines of a job.
     pub const fn note_robot_elsewhere(&mut self) {
         self.state.robot_elsewhere = true;
     }
 
-    /// Note that the job can hand over to a workstation controller in another process.
     pub const fn note_hand_over(&mut self) {
         self.state.hands_over = true;
     }
@@ -120,14 +111,12 @@ impl SimulatedWorkstation {
         self.state.stopped && self.state.emergency.as_ref().is_some_and(sinks)
     }
 
-    /// Number of the first reload of task data that the job has requested since the last call of
-    /// [`World::loads`](crate::World::loads).
+    /// Number of the first load since the last call of [`World::loads`](crate::World::loads).
     #[must_use]
     pub fn first_load(&self) -> Option<u32> {
         self.state.loads.first().copied()
     }
 
-    /// Reloads of task data that the job has requested since the last call.
     pub(crate) fn take_loads(&mut self) -> Vec<u32> {
         std::mem::take(&mut self.state.loads)
     }
@@ -137,16 +126,12 @@ impl SimulatedWorkstation {
         std::mem::take(&mut self.state.delivered)
     }
 
-    /// Begin an action of an operator; `line` is its text.
-    ///
-    /// # Errors
-    /// A message if the workstation cannot execute it.
+    /// Begin an action of an operator; `line` is its text. Errors: a message if the workstation cannot execute it.
     pub fn begin_line(&mut self, action: &Action, line: &str) -> Result<(), String> {
         self.begin(action, line)
     }
 
-    /// Begin a line that devices behind couplers execute. Returns false for one that the cell executes; a person fills
-    /// the trays of the simulated cell.
+    /// False for a line that the cell executes; a person fills the trays of the simulated cell.
     fn begin_by_devices(&mut self, action: &Action) -> Result<bool, String> {
         let Some(field) = self.field.as_deref_mut() else { return Ok(false) };
         let is_simulated = matches!(field, Field::Simulated(_));
@@ -158,7 +143,6 @@ impl SimulatedWorkstation {
         Ok(!(is_simulated && matches!(action, Action::Tray { .. })))
     }
 
-    /// True while a line is executed by devices behind couplers.
     fn is_executed_by_devices(&self) -> bool {
         self.field.as_deref().is_some_and(|field| field.desk().lines().is_busy())
     }
@@ -172,10 +156,7 @@ impl SimulatedWorkstation {
     }
 }
 
-/// The actions of a cell for an action of a job, in order.
-///
-/// # Errors
-/// [`WorkstationError`] if the cell has no such vise. The cell itself checks all other names.
+/// Actions in order. Fails if the cell has no such vise; the cell itself checks all other names.
 pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<WorkstationAction>, WorkstationError> {
     Ok(vec![match action {
         Action::Tray { location, object, offset } => WorkstationAction::Place {
@@ -276,7 +257,6 @@ mod tests {
     use std::path::Path;
     use taskdata::load::{Job, Source, Step, Store};
 
-    /// A workstation with the shipped cell and its task data.
     struct Bench {
         workstation: SimulatedWorkstation,
         store: Store,

@@ -11,27 +11,21 @@ use crate::{
     plan::{InWords, OutWords, Plan, Span},
 };
 
-/// Number of registers of process data in each direction.
-const WORDS: usize = 256;
-/// Text in the registers of the identity.
-const IDENTITY: &[u8; 14] = b"BK9000 emulate";
+const WORDS: usize = 256; // number of registers of process data in each direction
+const IDENTITY: &[u8; 14] = b"BK9000 emulate"; // text in the registers of the identity
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CouplerFault {
     #[default]
     None,
-    /// Its answers are good, but its inputs stand still.
-    Freeze,
-    /// Its answers are those to the previous request.
-    Stale,
-    /// Its terminals report this status word.
-    Terminals(u16),
+    Freeze,         // its answers are good, but its inputs stand still
+    Stale,          // its answers are those to the previous request
+    Terminals(u16), // its terminals report this status word
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Watchdog {
-    /// No output was written since the start, or since the reset.
-    Idle,
+    Idle, // no output was written since the start, or since the reset
     Active {
         until: u64,
     },
@@ -47,19 +41,15 @@ pub struct Emulated {
     unit: u8,
     inputs: [u16; WORDS],
     outputs: [u16; WORDS],
-    /// Inputs at the time at which they froze.
-    frozen: [u16; WORDS],
-    /// Numbers of registers in the process data: inputs, outputs.
-    lengths: (u16, u16),
+    frozen: [u16; WORDS], // inputs at the time at which they froze
+    lengths: (u16, u16),  // numbers of registers in the process data: inputs, outputs
     watchdog: Watchdog,
     watchdog_ms: u16,
     watchdog_type: u16,
     fault: CouplerFault,
     now: u64,
-    /// Number of writes of outputs that were carried out.
-    writes: u64,
-    /// Number of times that the watchdog has fired.
-    fallbacks: u32,
+    writes: u64,    // number of writes of outputs that were carried out
+    fallbacks: u32, // number of times that the watchdog has fired
     previous: Answer,
 }
 
@@ -92,8 +82,7 @@ impl Emulated {
         }
     }
 
-    /// A coupler as delivered, with the registers of a plan. `None` for a plan that is not of registers, which this
-    /// coupler does not have.
+    /// A coupler as delivered. `None` for a plan that is not of registers.
     #[must_use]
     pub fn of(plan: &Plan) -> Option<Self> {
         let length = |spans: &[Span], first: u16| match spans {
@@ -152,19 +141,16 @@ impl Emulated {
         &mut self.outputs
     }
 
-    /// Number of writes of outputs that were carried out.
     #[must_use]
     pub const fn writes(&self) -> u64 {
         self.writes
     }
 
-    /// Number of times that the watchdog has fired.
     #[must_use]
     pub const fn fallbacks(&self) -> u32 {
         self.fallbacks
     }
 
-    /// Begins a fault, or ends it.
     pub const fn set_fault(&mut self, fault: CouplerFault) {
         self.frozen = self.inputs;
         self.fault = fault;
@@ -189,10 +175,7 @@ impl Emulated {
         }
     }
 
-    /// Answers a frame at the time `now`, ns. Returns the length of the answer in `buffer`.
-    ///
-    /// # Errors
-    /// [`Error`]: the coupler closes the connection.
+    /// Returns the length of the answer in `buffer`; `now` in ns. On an error the coupler closes the connection.
     pub fn answer(
         &mut self,
         now: u64,
@@ -286,7 +269,6 @@ impl Emulated {
         *self.kind.facts().outputs.start()
     }
 
-    /// Checks that outputs can be written now.
     const fn check_writable(&self) -> Result<(), Exception> {
         match self.watchdog {
             Watchdog::Fired { .. } => Err(Exception::ServerDeviceFailure),

@@ -10,17 +10,11 @@ pub trait Link {
     /// The time, ns of one monotonic clock.
     fn now(&mut self) -> u64;
 
-    /// Connects.
-    ///
-    /// # Errors
-    /// [`Fault`] if the device does not accept the connection in time.
+    /// Connects. Fails if the device does not accept the connection in time.
     fn connect(&mut self) -> Result<(), Fault>;
 
     /// Sends a request and waits for its answer, with a limit. While an earlier request is unanswered, it waits for
     /// that answer first, and drops it: two requests are never under way.
-    ///
-    /// # Errors
-    /// [`Fault`].
     fn exchange<'a>(
         &mut self,
         request: &Request<'_>,

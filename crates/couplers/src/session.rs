@@ -35,10 +35,8 @@ const MOST_SILENCE: u64 = 116 * MS;
 const PAUSES: (u64, u64) = (20 * MS, 320 * MS);
 /// Period in which outputs, settings and status of the device are read back.
 const CHECKED_EVERY: u64 = 1000 * MS;
-/// Time within which the outputs of the end must be confirmed.
-const MOST_ENDING: u64 = 150 * MS;
-/// Time in which the counter of a device's program must change.
-const MOST_STILL: u64 = 2000 * MS;
+const MOST_ENDING: u64 = 150 * MS; // time within which the outputs of the end must be confirmed
+const MOST_STILL: u64 = 2000 * MS; // time in which the counter of a device's program must change
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
@@ -46,10 +44,8 @@ enum Phase {
     Closed {
         next: u64,
     },
-    /// Connected; the device must be set up.
-    Setup,
-    /// Connected again; the device must be as it was left.
-    Back,
+    Setup, // connected; the device must be set up
+    Back,  // connected again; the device must be as it was left
     Open,
 }
 
@@ -60,27 +56,21 @@ struct Alive {
     since: u64,
 }
 
-/// State of a device and of its connection.
 #[derive(Clone, Debug)]
 pub struct Session {
     plan: Plan,
     phase: Phase,
     report: Report,
-    /// The last image that was sent; the device may not have carried it out.
-    sent: OutWords,
-    /// When the last write began that the device acknowledged.
-    written_at: Option<u64>,
-    /// When the device answered last, or was connected.
-    heard_at: u64,
-    /// Pause before the next attempt to connect.
-    pause: u64,
+    sent: OutWords, // the last image that was sent; the device may not have carried it out
+    written_at: Option<u64>, // when the last write began that the device acknowledged
+    heard_at: u64,  // when the device answered last, or was connected
+    pause: u64,     // pause before the next attempt to connect
     /// Number of the newest orders, and when they were first seen. `None` until the run writes outputs.
     orders: Option<(u64, u64)>,
     go: u32,
     checked_at: u64,
     alive: Option<Alive>,
-    /// When the end was first asked for.
-    ending: Option<u64>,
+    ending: Option<u64>, // when the end was first asked for
 }
 
 /// A device is not ready: it stays in its phase, and no connection has failed.
@@ -97,10 +87,7 @@ impl From<Fault> for Stop {
 }
 
 impl Session {
-    /// A session that has not connected yet.
-    ///
-    /// # Errors
-    /// [`PlanError`] if the plan cannot be followed.
+    /// A session that has not connected yet. Fails if the plan cannot be followed.
     pub fn new(plan: Plan) -> Result<Self, PlanError> {
         plan.check()?;
         Ok(Self {
@@ -178,7 +165,6 @@ impl Session {
         self.transfer(link, Some(&safe))
     }
 
-    /// Advances the connection by one exchange.
     fn advance(&mut self, link: &mut impl Link, orders: &Orders) -> Result<(), Stop> {
         if let Phase::Closed { next } = self.phase {
             if link.now() < next {
@@ -220,7 +206,6 @@ impl Session {
         self.check_device(link)
     }
 
-    /// Releases a tripped device if an operator has asked for it.
     fn release(&mut self, orders: &Orders) {
         if orders.go == self.go || !matches!(self.report.state, State::Tripped(_)) {
             self.go = orders.go;
@@ -241,7 +226,6 @@ impl Session {
         }
     }
 
-    /// Handles an exchange that was not completed.
     fn stopped(&mut self, link: &mut impl Link, stop: Stop) {
         match stop {
             Stop::Refused(refusal) => self.report.refusal = Some(refusal),
@@ -268,7 +252,6 @@ impl Session {
         }
     }
 
-    /// Makes the outputs safe until the device is released.
     fn trip(&mut self, cause: Trip) {
         if !matches!(self.report.state, State::Tripped(_)) {
             self.report.state = State::Tripped(cause);
@@ -285,7 +268,6 @@ impl Session {
         self.pause = (self.pause * 2).min(PAUSES.1);
     }
 
-    /// Writes the outputs of the end, reads them back, and disconnects.
     fn finish(&mut self, link: &mut impl Link) -> Result<(), Fault> {
         let confirmed = if self.written_at.is_none() {
             // Nothing was written.

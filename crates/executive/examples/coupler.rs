@@ -18,8 +18,7 @@ use executive::{
 };
 use rcs_core::Plain;
 
-/// Word of the output image that holds the time of its tick, ms.
-const CLOCK: usize = 1;
+const CLOCK: usize = 1; // word of the output image that holds the time of its tick, ms
 
 /// The time, ms; it begins again every 65 s.
 fn milliseconds() -> u16 {

@@ -44,9 +44,8 @@ pub trait Time {
     }
 }
 
-/// `CLOCK_MONOTONIC`; it sleeps with `TIMER_ABSTIME`.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Monotonic;
+pub struct Monotonic; // `CLOCK_MONOTONIC`; it sleeps with `TIMER_ABSTIME`
 
 impl Time for Monotonic {
     fn now(&mut self) -> Duration {
@@ -63,7 +62,6 @@ impl Time for Monotonic {
     }
 }
 
-/// The absolute 40 ms grid.
 #[derive(Debug)]
 pub struct Grid<T> {
     time: T,
@@ -72,8 +70,7 @@ pub struct Grid<T> {
     slot: u64,
     ticks: u64,
     skipped: u64,
-    /// The slot for which the thread was woken early.
-    ready_for: Option<u64>,
+    ready_for: Option<u64>, // the slot for which the thread was woken early
     late: Duration,
 }
 
@@ -99,8 +96,7 @@ impl<T: Time> Grid<T> {
         self.ready_for = Some(next);
     }
 
-    /// Wait until the next slot begins: asleep, or awake after [`wake_early`](Self::wake_early). Returns the number of
-    /// slots that were skipped before it.
+    /// Waits asleep, or awake after [`wake_early`](Self::wake_early). Returns the number of slots skipped.
     pub fn wait(&mut self) -> u64 {
         let begins = if let Some(next) = self.ready_for.take() {
             let begins = self.begin(next);
@@ -123,7 +119,6 @@ impl<T: Time> Grid<T> {
         skipped
     }
 
-    /// Time at which a slot begins.
     fn begin(&self, slot: u64) -> Duration {
         self.start + self.length * u32::try_from(slot).unwrap_or(u32::MAX)
     }
@@ -139,13 +134,11 @@ impl<T: Time> Grid<T> {
         self.start
     }
 
-    /// Number of slots in which a tick was run.
     #[must_use]
     pub const fn ticks(&self) -> u64 {
         self.ticks
     }
 
-    /// Number of slots that were skipped.
     #[must_use]
     pub const fn skipped(&self) -> u64 {
         self.skipped
@@ -167,10 +160,8 @@ impl<T: Time> Grid<T> {
 /// The rate of ticks.
 #[derive(Debug)]
 pub enum Clock {
-    /// One tick immediately after the other.
-    Fast,
-    /// One tick every 40 ms.
-    Real(Grid<Monotonic>),
+    Fast,                  // one tick immediately after the other
+    Real(Grid<Monotonic>), // one tick every 40 ms
 }
 
 impl Clock {
@@ -181,8 +172,7 @@ impl Clock {
         Self::Real(Grid::with_slots_of(Monotonic, length))
     }
 
-    /// Sleep until shortly before the next tick; true if there is time left until it is due. Always false with
-    /// [`Clock::Fast`].
+    /// Returns true if there is time left until the tick is due; always false with [`Clock::Fast`].
     pub fn wake_early(&mut self) -> bool {
         match self {
             Self::Fast => false,
@@ -193,7 +183,6 @@ impl Clock {
         }
     }
 
-    /// Delay of the beginning of the last tick.
     #[must_use]
     pub const fn late(&self) -> Duration {
         match self {
@@ -219,7 +208,6 @@ impl Clock {
         }
     }
 
-    /// Number of slots skipped since the start.
     #[must_use]
     pub const fn skipped(&self) -> u64 {
         match self {
@@ -235,8 +223,7 @@ mod tests {
     use proptest::prelude::*;
     use std::time::Instant;
 
-    /// Time controlled by a test: each sleep ends late by the next entry of `late`, or early by a signal if the entry
-    /// is `None`.
+    /// Each sleep of this test clock ends late by the next entry of `late`, or early by a signal if it is `None`.
     struct Scripted {
         now: Duration,
         late: Vec<Option<Duration>>,

@@ -26,8 +26,7 @@ use thread_priority::{
 
 /// Priority of the tick: above interrupt threads of ordinary devices, below the kernel's own watchdogs.
 pub const PRIORITY: u8 = 80;
-/// Priority of the threads of couplers: below the tick.
-pub const FIELD_PRIORITY: u8 = PRIORITY - 1;
+pub const FIELD_PRIORITY: u8 = PRIORITY - 1; // priority of the threads of couplers: below the tick
 
 /// Size of the stack that is touched beforehand; a tick needs a fraction of it.
 const STACK_BYTES: usize = 512 * 1024;
@@ -38,8 +37,7 @@ const IDLE_STATES: &str = "/dev/cpu_dma_latency";
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
     pub what: String,
-    /// Reason of the refusal; `None` if it was granted.
-    pub refused: Option<String>,
+    pub refused: Option<String>, // reason of the refusal; `None` if it was granted
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -103,9 +101,6 @@ pub fn acquire(core: Option<usize>) -> RealTime {
 }
 
 /// Request only the priority, for the calling thread: for a thread that serves a link in parallel with the ticks.
-///
-/// # Errors
-/// The reason of the refusal.
 pub fn raise_priority(priority: u8) -> Result<(), String> {
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     ThreadPriority::try_from(priority).map_err(|error| error.to_string()).and_then(|priority| {

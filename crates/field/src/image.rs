@@ -11,15 +11,11 @@ use crate::{
     scale::Format,
 };
 
-/// What a connection knows of its device before a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
-    /// The words that were read last.
-    pub words: InWords,
-    /// Their age, ms; `None` if none were read yet.
-    pub age_ms: Option<u32>,
-    /// Its outputs are safe until an operator releases them.
-    pub is_tripped: bool,
+    pub words: InWords,      // the words that were read last
+    pub age_ms: Option<u32>, // their age, ms; `None` if none were read yet
+    pub is_tripped: bool,    // its outputs are safe until an operator releases them
 }
 
 impl Seen {
@@ -39,11 +35,9 @@ impl Seen {
     }
 }
 
-/// The input of the safety circuit.
-pub const SAFETY: &str = "safety.ok";
+pub const SAFETY: &str = "safety.ok"; // the input of the safety circuit
 
-/// Age after which a device is lost, ms: 25 ticks.
-pub const LOST_MS: u32 = 1000;
+pub const LOST_MS: u32 = 1000; // age after which a device is lost, ms: 25 ticks
 
 impl Mapping {
     /// Writes the words of the devices, in their order, into the inputs of the controller. The words of a device that
@@ -72,8 +66,7 @@ impl Mapping {
         inputs.field = health;
     }
 
-    /// Writes the outputs of the controller into the words of the devices. Outputs of the workstation get their safe
-    /// value; [`collect_station`](Self::collect_station) writes them.
+    /// Outputs of the workstation get their safe value; [`collect_station`](Self::collect_station) writes them.
     pub fn collect(&self, outputs: &DeviceOutputs, images: &mut [OutWords]) {
         for point in &self.outputs {
             let Some(image) = images.get_mut(point.slot.device) else { continue };
@@ -106,8 +99,7 @@ impl Mapping {
         }
     }
 
-    /// Writes the outputs of the workstation into the words of the devices. `values` has one for each of the mapping's
-    /// outputs; those of other outputs are not used.
+    /// `values` has one for each of the mapping's outputs; those of other outputs are not used.
     pub fn collect_station(&self, values: &[i64], images: &mut [OutWords]) {
         for (point, value) in self.outputs.iter().zip(values).filter(|(point, _)| point.is_station()) {
             if let Some(image) = images.get_mut(point.slot.device) {
@@ -125,8 +117,7 @@ impl Mapping {
         }
     }
 
-    /// Puts what the sensors of the workstation show into the words of the devices. `values` has one for each of the
-    /// mapping's inputs.
+    /// `values` has one for each of the mapping's inputs.
     pub fn sample_station(&self, values: &[i64], images: &mut [InWords]) {
         for (point, value) in self.inputs.iter().zip(values).filter(|(point, _)| point.is_station()) {
             if let Origin::Slot(slot) = point.from
@@ -272,7 +263,6 @@ impl Slot {
         there.zip(words).for_each(|(word, value)| *word = value);
     }
 
-    /// Sets all its bits in an image.
     pub(crate) fn mark(&self, image: &mut [u16]) {
         let mask = self.bit.map_or(u16::MAX, |bit| 1 << bit);
         let there = image.iter_mut().skip(self.word).take(self.format.registers().into());

@@ -27,20 +27,14 @@ const TICKS_PER_S: u64 = 1000 / TICK_MS;
 /// How the devices execute a line: the entry `[[line]]` of a mapping.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sequence {
-    /// The words of the line without `**`, separated by one space.
-    pub line: String,
-    /// What the operator is asked to do; empty if the devices do it.
-    pub ask: String,
-    /// Conditions before the outputs are set.
-    pub needs: Vec<Condition>,
+    pub line: String,          // the words of the line without `**`, separated by one space
+    pub ask: String,           // what the operator is asked to do; empty if the devices do it
+    pub needs: Vec<Condition>, // conditions before the outputs are set
     pub sets: Vec<Setting>,
-    /// The device has taken the order.
-    pub begun: Vec<Condition>,
+    pub begun: Vec<Condition>, // the device has taken the order
     pub done: Vec<Condition>,
-    /// Conditions that must hold from the setting of the outputs to the end.
-    pub during: Vec<Condition>,
-    /// Inputs that end the line with a failure.
-    pub fault: Vec<Condition>,
+    pub during: Vec<Condition>, // conditions that must hold from the setting of the outputs to the end
+    pub fault: Vec<Condition>,  // inputs that end the line with a failure
     /// Outputs after `begun`, or at the end of a line without `begun`, or of one that failed.
     pub then: Vec<Setting>,
     pub begun_within_s: u16,
@@ -50,16 +44,14 @@ pub struct Sequence {
 /// An input of the workstation, and the value that it must have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Condition {
-    /// Index in the inputs of the mapping.
-    pub input: usize,
+    pub input: usize, // index in the inputs of the mapping
     pub value: i64,
 }
 
 /// An output of the workstation, and its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// Index in the outputs of the mapping.
-    pub output: usize,
+    pub output: usize, // index in the outputs of the mapping
     pub value: i64,
 }
 
@@ -71,48 +63,37 @@ pub fn normalized(line: &str) -> String {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// The outputs are not set yet: an input of `needs` is late.
-    Checking,
-    /// The outputs are set; `begun` was not seen.
-    Setting,
-    /// The line has begun, or has no `begun`.
-    Running,
+    Checking, // the outputs are not set yet: an input of `needs` is late
+    Setting,  // the outputs are set; `begun` was not seen
+    Running,  // the line has begun, or has no `begun`
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Current {
-    /// Index in the lines of the mapping.
-    entry: usize,
+    entry: usize, // index in the lines of the mapping
     phase: Phase,
-    /// Ticks since the beginning of the line, and of the phase.
-    ticks: u64,
+    ticks: u64, // ticks since the beginning of the line, and of the phase
     in_phase: u64,
-    /// `done` was seen off since the line began.
-    was_off: bool,
-    /// Ticks for which `done` has held.
-    held: u64,
+    was_off: bool, // `done` was seen off since the line began
+    held: u64,     // ticks for which `done` has held
 }
 
 /// The lines that the devices execute: the present one, and the outputs of all.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lines {
-    /// One value for each output of the mapping; only those of the workstation are used.
-    outputs: Vec<i64>,
+    outputs: Vec<i64>, // one value for each output of the mapping; only those of the workstation are used
     current: Option<Current>,
-    /// A line that had begun when a device was tripped.
-    interrupted: Option<usize>,
+    interrupted: Option<usize>, // a line that had begun when a device was tripped
     failure: Option<Failure>,
 }
 
 impl Lines {
-    /// No line; all outputs are safe.
     #[must_use]
     pub fn new(mapping: &Mapping) -> Self {
         let outputs = mapping.outputs.iter().map(|point| point.safe).collect();
         Self { outputs, current: None, interrupted: None, failure: None }
     }
 
-    /// One value for each output of the mapping; only those of the workstation are used.
     #[must_use]
     pub fn outputs(&self) -> &[i64] {
         &self.outputs
@@ -136,10 +117,8 @@ impl Lines {
         Some(entry.ask.as_str()).filter(|ask| !ask.is_empty())
     }
 
-    /// Begins a line. Its conditions are checked by [`step`](Self::step).
-    ///
-    /// # Errors
-    /// [`Failure`] if the mapping has no entry for the line, or another one is executed.
+    /// Begins a line. Its conditions are checked by [`step`](Self::step). Fails if the mapping has no entry for the
+    /// line, or another one is executed.
     pub fn begin(&mut self, mapping: &Mapping, line: &str) -> Result<(), Failure> {
         let failed = |why| Failure { line: line.to_owned(), why };
         if let Some(other) = self.current.and_then(|current| mapping.lines.get(current.entry)) {
@@ -153,7 +132,6 @@ impl Lines {
         Ok(())
     }
 
-    /// Carries out one tick of the present line.
     pub fn step(&mut self, mapping: &Mapping, devices: &[Seen]) {
         self.failure = None;
         let Some(mut current) = self.current else { return };
@@ -211,25 +189,20 @@ impl Lines {
     }
 }
 
-/// Whether a list of conditions holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Held {
     Yes,
     No,
-    /// An input is late, and no other one breaks the list.
-    Late,
+    Late, // an input is late, and no other one breaks the list
 }
 
-/// What the inputs show about a line in a tick.
 #[derive(Debug)]
 struct Facts {
-    /// A tripped device of the line.
-    tripped: Option<String>,
+    tripped: Option<String>, // a tripped device of the line
     needs: Held,
     begun: Held,
     done: Held,
-    /// The first conditions that do not hold, for messages.
-    missing_need: Option<Observed>,
+    missing_need: Option<Observed>, // the first conditions that do not hold, for messages
     missing_begun: Option<Observed>,
     missing_done: Option<Observed>,
     lost: Option<Observed>,
@@ -283,10 +256,8 @@ impl Facts {
 #[derive(Debug)]
 enum Decision {
     Wait,
-    /// Write the outputs of the line.
-    Set,
-    /// The device has taken the order.
-    Begun,
+    Set,   // write the outputs of the line
+    Begun, // the device has taken the order
     End,
     Fail(Why),
 }

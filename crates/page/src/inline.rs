@@ -10,10 +10,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use data_encoding::BASE64;
 use sha2::{Digest as _, Sha256};
 
-/// The file that the browser reads first.
-const INDEX: &str = include_str!("../web/index.html");
-/// The module that starts the page.
-const START: &str = "app.js";
+const INDEX: &str = include_str!("../web/index.html"); // the file that the browser reads first
+const START: &str = "app.js"; // the module that starts the page
 /// The part of [`INDEX`] that loads style and modules while the page is developed.
 const LINKS: &str =
     "<link rel=\"stylesheet\" href=\"style.css\">\n<script type=\"module\" src=\"app.js\"></script>";
@@ -90,8 +88,7 @@ const MODULES: &[(&str, &str)] = &[
 
 #[derive(Clone, Copy, Debug)]
 pub enum Content<'a> {
-    /// A packed log ([`crate::pack`]).
-    Log(&'a [u8]),
+    Log(&'a [u8]), // a packed log ([`crate::pack`])
     /// A run in progress ([`crate::pack_start`]). The page connects to the live view at the address that served it.
     Run(&'a [u8]),
 }
@@ -129,10 +126,8 @@ pub fn document(title: &str, content: Content<'_>) -> String {
         .replace("</body>", &body)
 }
 
-/// Joins modules into one script that starts with `start`.
-///
-/// # Errors
-/// A sentence that names the module and the line that is not in the expected form.
+/// Joins modules into one script that starts with `start`. Errors: a sentence that names the module and the line that
+/// is not in the expected form.
 pub fn bundle(modules: &[(&str, &str)], start: &str) -> Result<String, String> {
     let known: BTreeMap<&str, &str> = modules.iter().map(|(path, text)| (file_name(path), *text)).collect();
     if known.len() != modules.len() {
@@ -183,11 +178,9 @@ fn append(
 
 #[derive(Default)]
 struct Module {
-    /// Names of bindings, and the file name of the module that has them.
-    imports: Vec<(String, String)>,
+    imports: Vec<(String, String)>, // names of bindings, and the file name of the module that has them
     exports: Vec<String>,
-    /// The text without its imports, and without the word `export`.
-    body: String,
+    body: String, // the text without its imports, and without the word `export`
 }
 
 impl Module {
@@ -249,10 +242,8 @@ fn getter(file: &str) -> String {
     format!("module_{}", stem.replace('-', "_"))
 }
 
-/// A source without what only its readers need: comments, indentation and empty lines.
-///
-/// `/*` begins a comment wherever it stands, and a text over several lines loses its indentation; the sources have
-/// neither where it matters.
+/// Removes comments, indentation and empty lines. `/*` begins a comment wherever it stands, and a text over several
+/// lines loses its indentation; the sources have neither where it matters.
 fn compact(source: &str) -> String {
     let mut code = String::with_capacity(source.len());
     let mut rest = source;

@@ -23,10 +23,8 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Jaws {
     Open,
-    /// Partially closed, wide enough for a blank to enter.
-    Partial,
-    /// Closed, on a part if there is one.
-    Closed,
+    Partial, // partially closed, wide enough for a blank to enter
+    Closed,  // closed, on a part if there is one
 }
 
 impl Jaws {
@@ -57,8 +55,7 @@ pub struct Vise {
     #[serde(with = "crate::image::frame")]
     frame: Frame,
     program: usize,
-    /// Distance of the inner faces of the jaws, in.
-    gap: f64,
+    gap: f64, // distance of the inner faces of the jaws, in
     target: f64,
     jaw: RigidBodyHandle,
     stopped: bool,
@@ -69,10 +66,8 @@ pub struct Vise {
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Clamped {
     pub part: usize,
-    /// The step in which it is clamped.
-    pub step: usize,
-    /// Its pose in the frame of the vise, m.
-    pub rest: Pose,
+    pub step: usize, // the step in which it is clamped
+    pub rest: Pose,  // its pose in the frame of the vise, m
 }
 
 impl Vise {
@@ -119,7 +114,6 @@ impl Vise {
         0..self.description.program.len()
     }
 
-    /// Select the program with a name, if there is one.
     pub fn select(&mut self, name: &str) {
         let program = self.description.program.iter().position(|program| program.name == name);
         self.program = program.unwrap_or(self.program);
@@ -168,19 +162,16 @@ impl Vise {
         [Jaws::Open, Jaws::Partial, Jaws::Closed].into_iter().find(|jaws| is_at(self.gap, *jaws))
     }
 
-    /// Name of the selected program.
     #[must_use]
     pub fn program(&self) -> &str {
         &self.step(self.program).name
     }
 
-    /// True if a part stops the jaw.
     #[must_use]
     pub fn stopped(&self) -> bool {
         self.stopped
     }
 
-    /// True while the jaw moves towards the fixed jaw.
     #[must_use]
     pub fn closing(&self) -> bool {
         self.moving() && self.target < self.gap

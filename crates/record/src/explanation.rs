@@ -1,7 +1,5 @@
-//! Data with which a log explains itself, also to a program with other tables: the decision tables of the run,
-//! and the reasons of failures with their remedies, as JSON.
-//!
-//! MCAP does not compress attachments, so these are compressed with zstd.
+//! Data with which a log explains itself, also to a program with other tables: decision tables, and reasons of
+//! failures with their remedies, as JSON. MCAP does not compress attachments, so zstd does.
 
 use std::io::Read as _;
 
@@ -16,10 +14,8 @@ use serde_json::{Value, json};
 
 use crate::{Attachment, Log};
 
-/// Name of the attachment with the decision tables.
-pub const TABLES: &str = "tables.json.zst";
-/// Name of the attachment with the reasons.
-pub const REASONS: &str = "reasons.json.zst";
+pub const TABLES: &str = "tables.json.zst"; // name of the attachment with the decision tables
+pub const REASONS: &str = "reasons.json.zst"; // name of the attachment with the reasons
 /// Name of the attachment with the first failure and its consequences; only in the log of a failed run.
 pub const FAILURE: &str = "failure.json";
 
@@ -28,7 +24,6 @@ const COMPRESSION: i32 = 6;
 /// Greatest size of a decompressed file, bytes, since a damaged one may claim any size.
 const LARGEST: u64 = 16 << 20;
 
-/// The decision tables and the reasons of this program, as attachments.
 #[must_use]
 pub fn attachments() -> [Attachment; 2] {
     [(TABLES, tables()), (REASONS, reasons())].map(|(name, value)| {
@@ -38,8 +33,7 @@ pub fn attachments() -> [Attachment; 2] {
     })
 }
 
-/// The tables of a log, or its reasons, by the name of the attachment. `None` if the log is older than these
-/// attachments, or the attachment is damaged.
+/// An attachment by its name. `None` if it is damaged, or the log is older.
 #[must_use]
 pub fn of_log(log: &Log, name: &str) -> Option<Value> {
     let data = &log.attachment(name)?.data;
@@ -111,8 +105,7 @@ fn step(variant: &VariantSchema) -> Value {
     json!({ "name": variant.name, "doc": prose([variant.doc]), "code": variant.code })
 }
 
-/// A variable of the number that stores the values of all variables ([`rcs_core::table::Variables::code`]), also one that
-/// no row tests.
+/// A digit of [`rcs_core::table::Variables::code`], also for a variable that no row tests.
 fn digit(variable: &'static Variable) -> Value {
     json!({ "name": variable.name, "values": variable.values.variants.len() })
 }

@@ -19,10 +19,8 @@ use crate::{
 /// Where the tables of an explanation are from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// The log has the tables of this program.
-    Same,
-    /// The log has other tables, which are used.
-    Log,
+    Same, // the log has the tables of this program
+    Log,  // the log has other tables, which are used
     /// The log is older than the attachment, or the attachment is damaged: the tables of this program are used.
     Program,
 }
@@ -43,7 +41,6 @@ impl Origin {
     }
 }
 
-/// The processes with the tables by which a log is explained.
 #[must_use]
 pub fn of_log(log: &Log) -> (&'static [ProcessInfo; PROCESS_COUNT], Origin) {
     let own = (Ladder::processes(), Origin::Program);

@@ -18,18 +18,13 @@ use crate::{
     reader::Log,
 };
 
-/// Topic of the lines of the job.
-pub const JOB_LINES: &str = "/job/lines";
-/// Topic of the progress of the job.
-pub const JOB_STATE: &str = "/job/state";
-/// Topic of the source of commands.
-pub const COMMANDER: &str = "/operator/state";
-/// Topic of the console of the robot controller.
-pub const CONTROLLER: &str = "/cell/controller";
+pub const JOB_LINES: &str = "/job/lines"; // topic of the lines of the job
+pub const JOB_STATE: &str = "/job/state"; // topic of the progress of the job
+pub const COMMANDER: &str = "/operator/state"; // topic of the source of commands
+pub const CONTROLLER: &str = "/cell/controller"; // topic of the console of the robot controller
 pub const PARTS: &str = "/cell/parts";
 pub const PLACES: &str = "/cell/places";
-/// Topic of the couplers of a run with `--field`.
-pub const FIELD: &str = "/field";
+pub const FIELD: &str = "/field"; // topic of the couplers of a run with `--field`
 
 messages! {
     /// A line of a job.
@@ -210,7 +205,6 @@ pub enum View {
     Couplers(Couplers),
 }
 
-/// A state with a channel of its own.
 pub trait State: Message + Default + PartialEq {
     const TOPIC: &'static str;
 }
@@ -258,18 +252,15 @@ impl<S: State> Changes<S> {
         self.0.get(end.checked_sub(1)?).map(|(_, state)| state)
     }
 
-    /// The last state.
     #[must_use]
     pub fn last(&self) -> Option<&S> {
         self.0.last().map(|(_, state)| state)
     }
 }
 
-/// Number of kinds of [`View`].
-pub const KINDS: usize = 7;
+pub const KINDS: usize = 7; // number of kinds of [`View`]
 
-/// Kinds that hardly ever change: the lines of the job, and the places.
-const FIXED: [usize; 2] = [0, 5];
+const FIXED: [usize; 2] = [0, 5]; // kinds that hardly ever change: the lines of the job, and the places
 
 impl View {
     #[must_use]
@@ -298,13 +289,11 @@ impl View {
     }
 }
 
-/// The channels of the views, with the last message of each.
-pub(crate) struct Views([Channel; KINDS]);
+pub(crate) struct Views([Channel; KINDS]); // the channels of the views, with the last message of each
 
 struct Channel {
     id: u16,
-    /// The last message; empty before the first.
-    last: Vec<u8>,
+    last: Vec<u8>, // the last message; empty before the first
     written: Tick,
 }
 

@@ -114,7 +114,6 @@ fn foxglove_layout_names_existing_channels_and_fields() {
     assert!(names.len() > 20);
 }
 
-/// Ticks of the messages on a topic.
 fn ticks(log: &[u8], topic: &str) -> Vec<u32> {
     let messages = mcap::MessageStream::new(log).unwrap().map(Result::unwrap);
     messages.filter(|message| message.channel.topic == topic).map(|message| message.sequence).collect()

@@ -16,10 +16,8 @@ use record::views::{Commander, JobState};
 
 use crate::pace::Pace;
 
-/// Ticks between two updates of the statistics over all ticks: 1 s.
-const SECOND: u64 = 25;
+const SECOND: u64 = 25; // ticks between two updates of the statistics over all ticks: 1 s
 
-/// The last published state of the cell.
 #[derive(Debug, Default)]
 pub struct View {
     shown: CellView,
@@ -130,7 +128,6 @@ fn count(number: usize) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }
 
-/// The first [`PARTS`] parts of the cell.
 fn shown(parts: &[PartState]) -> [PartView; PARTS] {
     let mut views = [PartView::default(); PARTS];
     for (view, part) in views.iter_mut().zip(parts) {

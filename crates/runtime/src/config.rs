@@ -22,14 +22,11 @@ use crate::as_text;
 /// Largest number of ticks in 40 ms: a tick with the simulated cell takes about 0.2 ms.
 pub const MOST_SPEED: u8 = 20;
 
-/// The configuration of a run. [`RunConfig::default`] is the configuration of `rcs-run` without options.
-///
-/// Serde reads and writes it with the words of the command line, such as `robot = "egm:6510,slack=15"` in TOML. Omitted
-/// fields have the default value; an unknown field is an error.
+/// [`RunConfig::default`] is `rcs-run` without options. Serde reads and writes it with the words of the command line,
+/// such as `robot = "egm:6510,slack=15"` in TOML; an omitted field has the default, an unknown field is an error.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct RunConfig {
-    /// Directory of task data, jobs and cell description.
     pub data: PathBuf,
     /// Name of a job in the data directory, or a path. Unused if another process commands.
     pub job: String,
@@ -37,7 +34,6 @@ pub struct RunConfig {
     pub clock: ClockKind,
     /// Number of ticks in 40 ms with the real clock; more than 1 needs the simulated robot.
     pub speed: u8,
-    /// Reaction to skipped slots of the 40 ms grid.
     #[serde(with = "as_text")]
     pub overrun: Policy,
     /// CPU core for the real clock; `None` for the highest core that the process may use.
@@ -56,8 +52,7 @@ pub struct RunConfig {
     /// Name of the run in shared memory; `None` for job name and process number.
     #[serde(with = "as_text::option")]
     pub name: Option<RunName>,
-    /// Time limit, s, for boards that are started by hand, for neighbours in other processes, and for a robot
-    /// controller at a port.
+    /// Time limit, s, for boards that are started by hand, for neighbours, and for a robot controller at a port.
     pub wait: u32,
     /// Seed of the cell's sensor noise and of the positions of delivered parts.
     pub seed: u64,
@@ -88,7 +83,6 @@ pub struct RunConfig {
     /// After a command that ends with an error, send PAUSE and the same command again, at most this number of
     /// times per line of the job.
     pub retry: u32,
-    /// Access of operators to the run.
     pub operator: OperatorAccess,
     /// A log whose operator inputs are replayed, each in its tick. Operators cannot connect then.
     pub inputs: Option<PathBuf>,
@@ -105,7 +99,6 @@ pub struct RunConfig {
     #[serde(with = "as_text::option")]
     pub live_socket: Option<Address>,
     pub remarks: BTreeMap<String, String>,
-    /// Share the buffers with other programs.
     pub shared_memory: bool,
     /// Called to end the process if the set-up of shared memory takes too long (`executive::memory::limit`),
     /// before the robot moves; `None` for no limit.
@@ -160,7 +153,6 @@ impl RunConfig {
         }
     }
 
-    /// True if couplers over TCP connect the devices.
     #[must_use]
     pub fn has_real_devices(&self) -> bool {
         self.field.as_ref().is_some_and(|field| !field.is_simulated)
@@ -248,7 +240,6 @@ pub enum ClockKind {
 }
 
 impl ClockKind {
-    /// The word of the command line.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -281,7 +272,6 @@ impl RobotKind {
     }
 }
 
-/// The robot, and the time limit for its answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotConfig {
     pub kind: RobotKind,
@@ -338,14 +328,12 @@ impl FromStr for RobotConfig {
     }
 }
 
-/// Read the value of `silence=SECONDS`.
 fn silence(seconds: &str) -> Result<u16, String> {
     seconds.parse().ok().filter(|seconds| (1..=LONGEST_SILENCE).contains(seconds)).ok_or_else(|| {
         format!("silence is a number of seconds from 1 to {LONGEST_SILENCE}, such as 60; found {seconds}")
     })
 }
 
-/// Read the value of `lag=MS`.
 fn lag(ms: &str) -> Result<u16, String> {
     ms.parse().ok().filter(|ms| *ms <= MOST_LAG_MS).ok_or_else(|| {
         format!("lag is a number of milliseconds from 0 to {MOST_LAG_MS}, such as {LAG_MS}; found {ms}")
@@ -365,7 +353,6 @@ pub enum Boards {
 }
 
 impl Boards {
-    /// The word of the command line.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {

@@ -28,8 +28,7 @@ pub const FRAMES: [&str; 2] = ["egm_feedback", "egm_target"];
 
 pub struct EgmPort {
     options: EgmOptions,
-    /// Expected lag, ms.
-    lag_ms: u16,
+    lag_ms: u16, // expected lag, ms
     line: Line,
     bridge: Bridge,
     outputs: BridgeOutputs,
@@ -43,17 +42,13 @@ pub struct EgmPort {
 struct Figures {
     cycles: Histogram,
     answers: Histogram,
-    /// Distances from feedback to target: sum of the squares, mm²; greatest, mm; count.
-    squares: f64,
+    squares: f64, // distances from feedback to target: sum of the squares, mm²; greatest, mm; count
     greatest: f64,
     count: u64,
 }
 
 impl EgmPort {
-    /// Open the line. A simulated robot starts at once.
-    ///
-    /// # Errors
-    /// [`StartError`] if the robot's frames or the port cannot be used.
+    /// Open the line. A simulated robot starts at once. Fails if the robot's frames or the port cannot be used.
     pub fn open(
         options: &EgmOptions,
         config: &RunConfig,
@@ -170,7 +165,6 @@ impl EgmPort {
         }
     }
 
-    /// Expected lag behind the commanded positions, ms.
     #[must_use]
     pub const fn lag_ms(&self) -> u16 {
         self.lag_ms

@@ -14,14 +14,11 @@ use sessions::{
 };
 use taskdata::load::Diagnostics;
 
-/// Errors of the start of a run.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StartError {
-    /// The data directory does not exist.
     #[error("there is no task data directory {}; name one with --data", .0.display())]
     NoData(PathBuf),
-    /// Task data or the job has errors.
     #[error("{what} cannot be used: {}", amount(.report.errors().count(), "error"))]
     Data { what: String, report: Box<Diagnostics> },
     /// Commands of the job use records of the task data that have errors.
@@ -31,30 +28,24 @@ pub enum StartError {
     )]
     WrongData {
         job: String,
-        /// One line per command, with its first error.
-        wrong: Vec<String>,
+        wrong: Vec<String>, // one line per command, with its first error
     },
-    /// The job or the fault file does not exist.
     #[error(transparent)]
     NoFile(#[from] UnknownFile),
     #[error("{} cannot be read: {source}", path.display())]
     Read { path: PathBuf, source: io::Error },
     #[error("the cell cannot be built: {0}")]
     Cell(#[from] CellError),
-    /// A robot at a port needs a clock in real time.
     #[error("a robot at a port needs real time: add --clock real")]
     NotInRealTime,
     #[error("a speed from 1 to {most} times real time was expected, found {0}", most = crate::config::MOST_SPEED)]
     Speed(u8),
-    /// The configuration names a robot of the caller, which has provided none.
     #[error("the configuration names a robot of the caller's own: start the run by Run::with_robot")]
     NoOwnRobot,
-    /// Faults of the line need the simulated robot.
     #[error("the file has faults of the line to the simulated robot; leave them out for any other robot")]
     FaultsAtPort,
     #[error("the field I/O cannot begin: {0}")]
     Field(#[from] closed_loop::field::FieldError),
-    /// The mapping cannot execute lines of the job: one sentence per line.
     #[error("the mapping of --field cannot execute the job: {}", .0.join("; "))]
     LinesWithoutDevices(Vec<String>),
     /// Couplers over TCP need a clock in real time.
@@ -62,42 +53,30 @@ pub enum StartError {
         "couplers over TCP need real time: add --clock real, or use --field sim:NAME for emulated couplers"
     )]
     FieldNotInRealTime,
-    /// A device cannot be opened.
     #[error("the field I/O cannot begin: {device}: {source}")]
     FieldDevice { device: String, source: executive::field::DeviceError },
-    /// Devices are not ready: one sentence per device.
     #[error("the field I/O cannot begin: {}", .0.join("; "))]
     FieldNotReady(Vec<String>),
-    /// A fault file cannot cut a real connection.
     #[error("the fault file cuts the connection of {0:?}, which needs emulated couplers: --field sim:NAME")]
     CutOverTcp(String),
-    /// The fault file cuts a connection that the run does not have.
     #[error("the fault file cuts the connection of {device:?}: expected {expected}")]
     NoSuchDevice { device: String, expected: String },
     #[error("the robot cannot be reached: {0}")]
     Port(#[from] OpenError),
-    /// The port of EGM cannot be opened.
     #[error("the robot cannot be reached: {0}")]
     Egm(#[from] executive::egm::udp::UdpError),
-    /// The robot's frames cannot be used.
     #[error(transparent)]
     Placement(#[from] executive::egm::placement::PlacementError),
-    /// The log whose inputs are to be replayed cannot be read.
     #[error("the operator's inputs cannot be replayed: {0}")]
     Inputs(#[source] Box<record::ReadError>),
-    /// The log whose inputs are to be replayed lacks those of the first ticks.
     #[error("the operator's inputs cannot be replayed: {}: {part}; name the log of a whole run", path.display())]
     LaterInputs { path: PathBuf, part: record::Part },
-    /// The database of the Data System cannot be opened.
     #[error("the Data System cannot keep its items: {0}")]
     DataBase(#[from] StoreError),
-    /// Another process owns the items of the Data System.
     #[error("the Data System is another process: name the database there, not here")]
     DataBaseElsewhere,
-    /// The file for pending updates of the Data System cannot be used.
     #[error("{0}; --outbox names another file")]
     Outbox(#[from] OutboxError),
-    /// An operator cannot be configured as a neighbour.
     #[error("an operator is no neighbour: --operator network lets operators connect, not --outside operator")]
     OperatorOutside,
     /// An address requires a neighbour or an operator that may connect there.
@@ -140,15 +119,12 @@ pub enum StartError {
     ResumedCell { path: PathBuf, why: String },
     #[error("a run is resumed with --boards one: boards in other processes start without a journal")]
     ResumeBoards,
-    /// The socket for operators cannot be opened, so the job would wait for one forever.
     #[error("--stand-by waits for an operator, and none can connect: {}: {source}", path.display())]
     NoOperator { path: PathBuf, source: io::Error },
     #[error("neighbours cannot connect: {0}")]
     Network(#[from] ListenError),
-    /// The mailboxes of a neighbour cannot be created.
     #[error("neighbours cannot connect: {0}")]
     Endpoint(#[source] io::Error),
-    /// The workstation controller has not connected.
     #[error("the workstation controller has not connected within {0} s; --wait N sets a longer time")]
     NoWorkstation(u32),
     #[error("the log cannot be written: {0}; --log names another file, --log none runs without")]
@@ -159,26 +135,20 @@ pub enum StartError {
         .inputs.display(), .log.display()
     )]
     InputsOfLog { inputs: PathBuf, log: PathBuf },
-    /// The live view needs a log.
     #[error("the live view shows what is written to the log: leave --log none out, or name a log file")]
     LiveWithoutLog,
     #[error("viewers cannot connect at 127.0.0.1:{port}: {source}; --live PORT names another port")]
     Live { port: u16, source: io::Error },
     #[error("rcs-gateway cannot connect at {address}: {source}; --live-socket unix:PATH names another path")]
     LiveSocket { address: Address, source: io::Error },
-    /// A thread of the run cannot be started.
     #[error("a thread of the run cannot be started: {0}")]
     Thread(#[source] io::Error),
-    /// The system provides no random numbers.
     #[error(transparent)]
     NoRandom(#[from] sessions::live::NoRandom),
-    /// The user has stopped the run before the first tick.
     #[error("{0} was stopped by the user before the first tick")]
     Interrupted(String),
-    /// A living run has the chosen name.
     #[error(transparent)]
     NameInUse(SharedMemoryError),
-    /// Not all boards of a run have started.
     #[error("not all boards have started: {0}")]
     Boards(#[from] SplitError),
 }

@@ -27,78 +27,50 @@ use closed_loop::{
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Event {
-    /// An event in the cell. Only prohibited contacts are events: [`Event::Contact`].
-    Cell(CellEvent),
-    /// Two objects have a prohibited contact, or have separated.
-    Contact(ContactEvent),
-    /// Faults of these kinds have occurred on the line to the robot.
-    LineFaults(Vec<&'static str>),
-    /// The state of the line to the robot has changed.
-    Link(&'static str),
-    /// The caller's robot refuses a point, or reports a fault.
-    RobotRefuses(Warning),
-    /// A neighbour has connected, disconnected or was refused.
-    Network(NetEvent),
-    /// The Data System refuses a command, for this reason.
-    DataBaseRefuses(String),
-    /// Remark from the connection to a Data System in another process.
-    DataSystem(data_system::Remark),
-    /// Remark from the connection to a pedestal in another process.
-    Pedestal(pedestal::Remark),
-    /// Remark from the connection to a vision system in another process.
-    Vision(vision::Remark),
-    /// A failed command is sent again.
-    Retries(Retry),
-    /// The job of an operator has failed; the run continues.
-    OperatorJobFailed(JobFailure),
-    /// A command of the workstation controller is refused.
-    CommandRefused(workstation::Refusal),
-    /// A command does not pass its check, for this reason; Task refuses it.
-    CommandFailsCheck(String),
+    Cell(CellEvent), // an event in the cell; only prohibited contacts are events: [`Event::Contact`]
+    Contact(ContactEvent), // two objects have a prohibited contact, or have separated
+    LineFaults(Vec<&'static str>), // faults of these kinds have occurred on the line to the robot
+    Link(&'static str), // the state of the line to the robot has changed
+    RobotRefuses(Warning), // the caller's robot refuses a point, or reports a fault
+    Network(NetEvent), // a neighbour has connected, disconnected or was refused
+    DataBaseRefuses(String), // the Data System refuses a command, for this reason
+    DataSystem(data_system::Remark), // remark from the connection to a Data System in another process
+    Pedestal(pedestal::Remark), // remark from the connection to a pedestal in another process
+    Vision(vision::Remark), // remark from the connection to a vision system in another process
+    Retries(Retry),  // a failed command is sent again
+    OperatorJobFailed(JobFailure), // the job of an operator has failed; the run continues
+    CommandRefused(workstation::Refusal), // a command of the workstation controller is refused
+    CommandFailsCheck(String), // a command does not pass its check, for this reason; Task refuses it
     /// A line of the workstation controller for the cell is refused, for this reason.
     CellLineRefused(String),
-    /// A confirmation that is false in the cell.
-    Untrue(Confirmation),
-    /// An event at a coupler.
-    Field(FieldEvent),
+    Untrue(Confirmation), // a confirmation that is false in the cell
+    Field(FieldEvent),    // an event at a coupler
     /// The status of the cell cannot be written for the workstation controller.
     CellStatusUnsent(MailboxError),
-    /// The job has transferred the command to the workstation controller.
-    HandedOver,
-    /// The workstation controller has disconnected, and the job continues.
-    TakenBack,
-    /// The job has begun to wait for an operator.
-    Waits(WaitReason),
-    /// The controller has started with what it knew in an earlier run.
-    Resumed(String),
+    HandedOver,        // the job has transferred the command to the workstation controller
+    TakenBack,         // the workstation controller has disconnected, and the job continues
+    Waits(WaitReason), // the job has begun to wait for an operator
+    Resumed(String),   // the controller has started with what it knew in an earlier run
     /// The journal cannot be written, for this reason; `None` when it is written again.
     Journal(Option<String>),
     /// Task data have been loaded during the run.
-    Loaded { generation: u32, name: String },
-    /// An external change of the run.
-    Changed(String),
-    RealTime {
-        /// The settings that the system granted, and the system.
-        verdict: String,
-        /// True if all were granted.
-        complete: bool,
+    Loaded {
+        generation: u32,
+        name: String,
     },
-    /// A board lacks some real-time settings.
-    BoardNotPunctual(Board),
-    /// Slots of the 40 ms grid were skipped.
-    Overrun(Overrun),
-    /// The live view has disconnected a viewer, for this reason.
-    ViewerDisconnected(String),
-    /// At the end of a failed run: the first failure or a consequence, as a sentence.
-    WentWrong(String),
-    /// The user stops the run, by a signal or by leaving the console that the run has started.
-    UserStops,
-    /// After skipped slots, the robot is brought to rest and the run ends.
-    Stops,
-    /// After skipped slots, the robot holds.
-    Holds,
-    /// The ticks are on time again, and the robot continues.
-    Punctual,
+    Changed(String), // an external change of the run
+    RealTime {
+        verdict: String, // the settings that the system granted, and the system
+        complete: bool,  // all were granted
+    },
+    BoardNotPunctual(Board),    // a board lacks some real-time settings
+    Overrun(Overrun),           // slots of the 40 ms grid were skipped
+    ViewerDisconnected(String), // the live view has disconnected a viewer, for this reason
+    WentWrong(String), // at the end of a failed run: the first failure or a consequence, as a sentence
+    UserStops, // the user stops the run, by a signal or by leaving the console that the run has started
+    Stops,     // after skipped slots, the robot is brought to rest and the run ends
+    Holds,     // after skipped slots, the robot holds
+    Punctual,  // the ticks are on time again, and the robot continues
 }
 
 impl Event {

@@ -21,18 +21,12 @@ use crate::{
     error::StartError,
 };
 
-/// Reads the mapping of a run. Also returns its text.
-///
-/// # Errors
-/// [`StartError`], with all errors of the file.
+/// Reads the mapping of a run. Also returns its text. Errors: [`StartError`], with all errors of the file.
 pub fn load(config: &FieldConfig, data: &Path) -> Result<(Mapping, String), StartError> {
     read_with_text(&FIELDS.find(&config.mapping, data)?)
 }
 
-/// Reads a mapping.
-///
-/// # Errors
-/// [`StartError`], with all errors of the file.
+/// Reads a mapping. Errors: [`StartError`], with all errors of the file.
 pub fn read(path: &Path) -> Result<Mapping, StartError> {
     read_with_text(path).map(|(mapping, _)| mapping)
 }
@@ -46,10 +40,7 @@ fn read_with_text(path: &Path) -> Result<(Mapping, String), StartError> {
     Ok((mapping, text))
 }
 
-/// Checks that the devices whose connection a fault plan cuts exist.
-///
-/// # Errors
-/// [`StartError::NoSuchDevice`].
+/// Checks that the devices whose connection a fault plan cuts exist. Errors: [`StartError::NoSuchDevice`].
 pub fn check_cuts(
     faults: &FaultPlan,
     config: &RunConfig,
@@ -86,10 +77,7 @@ pub fn refused_lines(mapping: &Mapping, job: &Job) -> Vec<String> {
     refused.collect()
 }
 
-/// Checks that the mapping of a run can execute all lines of its job.
-///
-/// # Errors
-/// [`StartError::LinesWithoutDevices`].
+/// Checks that the mapping of a run can execute all lines of its job. Errors: [`StartError::LinesWithoutDevices`].
 pub fn check_job(mapping: &Mapping, job: &Job) -> Result<(), StartError> {
     let refused = refused_lines(mapping, job);
     if refused.is_empty() { Ok(()) } else { Err(StartError::LinesWithoutDevices(refused)) }

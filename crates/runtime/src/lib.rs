@@ -64,5 +64,4 @@ pub use self::{
     views::controller_state,
 };
 
-/// Commit of the sources of this build.
-pub const COMMIT: &str = env!("RCS_COMMIT");
+pub const COMMIT: &str = env!("RCS_COMMIT"); // commit of the sources of this build

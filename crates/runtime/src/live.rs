@@ -23,27 +23,21 @@ use crate::{
     observer::Observer,
 };
 
-/// A live view, which ends when it is dropped.
 pub struct Live {
     feed: Feed,
     knob: Knob,
-    /// The port at which viewers wait until they are served.
-    port: Option<Port>,
+    port: Option<Port>, // the port at which viewers wait until they are served
     server: Option<Server>,
-    /// Viewers that the server has disconnected.
-    notices: Option<Receiver<String>>,
+    notices: Option<Receiver<String>>, // viewers that the server has disconnected
 }
 
 /// Data for viewers that the messages of a run do not contain.
 pub struct Beginning {
     pub attachments: Vec<Attachment>,
-    /// Time of tick 0.
-    pub epoch: Epoch,
-    /// Words of requests, for the completion of lines.
-    pub words: Words,
+    pub epoch: Epoch, // time of tick 0
+    pub words: Words, // words of requests, for the completion of lines
 }
 
-/// The valid words of an operator's line.
 #[derive(serde::Serialize)]
 pub struct Words {
     pub first: Vec<&'static str>,
@@ -64,8 +58,7 @@ impl Beginning {
     }
 }
 
-/// Metadata of the page: the time of tick 0, nanoseconds since 1970.
-const TICK_0: &str = "tick_0_ns";
+const TICK_0: &str = "tick_0_ns"; // metadata of the page: the time of tick 0, nanoseconds since 1970
 
 fn json(name: &str, value: &Value) -> Attachment {
     Attachment {
@@ -76,10 +69,7 @@ fn json(name: &str, value: &Value) -> Attachment {
 }
 
 impl Live {
-    /// Open the port, if the configuration has a live view.
-    ///
-    /// # Errors
-    /// [`StartError`] if there is no log, or the port is not available.
+    /// Open the port, if the configuration has a live view. Fails if there is no log, or the port is not available.
     pub fn prepare(config: &RunConfig) -> Result<Option<Self>, StartError> {
         let Some(port) = config.live else { return Ok(None) };
         if config.log == LogTarget::None {
@@ -101,10 +91,8 @@ impl Live {
         self.feed.tap()
     }
 
-    /// Serve viewers. They can send requests if operators can connect to the run.
-    ///
-    /// # Errors
-    /// [`StartError`] if the system provides no random numbers, or no thread.
+    /// Serve viewers. They can send requests if operators can connect to the run. Fails if the system provides no
+    /// random numbers, or no thread.
     pub fn start(
         &mut self,
         config: &RunConfig,

@@ -35,44 +35,32 @@ use crate::{
     setup::{EXTENSION, Setup},
 };
 
-/// Name of the fault plan among the attachments.
-pub const FAULTS: &str = "faults.toml";
+pub const FAULTS: &str = "faults.toml"; // name of the fault plan among the attachments
 /// Directory, among the attachments, of the files that the job can load during the run.
 pub const LOADS: &str = "loads/";
 
-/// Key of the metadata: origin of the task data, and the number of files.
-pub const DATA: &str = "data";
-/// Key: number of times that a command is repeated after an error.
-pub const RETRY: &str = "retry";
+pub const DATA: &str = "data"; // key of the metadata: origin of the task data, and the number of files
+pub const RETRY: &str = "retry"; // key: number of times that a command is repeated after an error
 pub const OUTSIDE: &str = "outside";
-/// Key: file of the Data System's items.
-pub const DATA_BASE: &str = "data_base_in";
-/// Its value if the items are only in memory.
-pub const IN_MEMORY: &str = "memory";
-/// Key: the job waited for an operator before its first line.
-pub const STAND_BY: &str = "stand_by";
+pub const DATA_BASE: &str = "data_base_in"; // key: file of the Data System's items
+pub const IN_MEMORY: &str = "memory"; // its value if the items are only in memory
+pub const STAND_BY: &str = "stand_by"; // key: the job waited for an operator before its first line
 /// Metadata key: the run also executes commands that use records with errors.
 pub const UNCHECKED: &str = "unchecked";
-/// Key: the couplers of the run, as `--field` names them.
-pub const FIELD: &str = "field";
-/// Attachment: the mapping of emulated couplers.
-pub const MAPPING: &str = "field.toml";
-/// Key: number of ticks after which the run was to stop.
+pub const FIELD: &str = "field"; // key: the couplers of the run, as `--field` names them
+pub const MAPPING: &str = "field.toml"; // attachment: the mapping of emulated couplers
 pub const TICKS: &str = "ticks";
 
 /// A log that is being written, and the data for drawing the cell.
 pub struct Log {
     recorder: Recorder,
-    /// Names of the moving links, in the order of the log.
-    links: Vec<String>,
-    /// Number of faults on the line so far, and their kinds in the last tick.
-    faults: Counts,
+    links: Vec<String>, // names of the moving links, in the order of the log
+    faults: Counts,     // number of faults on the line so far, and their kinds in the last tick
     kinds: Vec<&'static str>,
     vision: Vision,
     /// The data that the live view sends to a browser; `None` without a live view, and after they were taken.
     beginning: Option<Beginning>,
-    /// The contacts of the last tick.
-    touches: Vec<Touch>,
+    touches: Vec<Touch>, // the contacts of the last tick
 }
 
 /// The last request to vision, its answer, and the camera picture.
@@ -80,8 +68,7 @@ struct Vision {
     camera: Camera,
     request: VisionRequest,
     answer: VisionResponse,
-    /// Number of the request for which a picture was taken.
-    taken: u32,
+    taken: u32, // number of the request for which a picture was taken
     seen: Option<Vec<Subject>>,
 }
 
@@ -109,10 +96,7 @@ impl Vision {
 }
 
 impl Log {
-    /// Begin a log.
-    ///
-    /// # Errors
-    /// [`RecordError`] if the file cannot be written.
+    /// Begin a log. Fails if the file cannot be written.
     pub fn start(file: LogFile, config: &RunConfig, setup: &Setup) -> Result<Self, RecordError> {
         let tap = setup.live.as_ref().map(Live::tap);
         let coming: Vec<&str> = setup.job.steps.iter().filter_map(|line| delivered(&line.step)).collect();
@@ -268,10 +252,7 @@ impl Log {
         self.recorder.tick(tick, external, memory, state);
     }
 
-    /// End the log.
-    ///
-    /// # Errors
-    /// The [`RecordError`] that ended the log before the end of the run.
+    /// End the log. Errors: the [`RecordError`] that ended the log before the end of the run.
     pub fn finish(
         self,
         digest: Digest,

@@ -14,20 +14,16 @@ use crate::{
     observer::Observer,
 };
 
-/// The network of a run. Dropping it ends the network.
 pub struct Network {
-    /// Endpoints of the neighbours that may connect.
-    pub handles: Vec<EndpointHandle>,
+    pub handles: Vec<EndpointHandle>, // endpoints of the neighbours that may connect
     /// Operators, if they may connect, and the events of their connections.
     operators: Option<(Operators, Receiver<NetEvent>)>,
     _listener: Listener,
 }
 
 impl Network {
-    /// Listen at the address of a configuration, if it names one.
-    ///
-    /// # Errors
-    /// [`StartError`] if the options contradict each other, or the address cannot be used.
+    /// Listen at the address of a configuration, if it names one. Fails if the options contradict each other, or the
+    /// address cannot be used.
     pub fn start(
         config: &RunConfig,
         endpoints: &[&Endpoint],

@@ -14,10 +14,8 @@ use interfaces::CommonMemory;
 
 use crate::{event::Event, result::TickTimes};
 
-/// Number of processes in the result: those with the longest times.
-const PROCESSES_SHOWN: usize = 3;
+const PROCESSES_SHOWN: usize = 3; // number of processes in the result: those with the longest times
 
-/// The clock of a run, and its measurements.
 pub struct Pace {
     clock: Clock,
     policy: Policy,

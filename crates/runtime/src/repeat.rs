@@ -23,10 +23,8 @@ use crate::{
 
 /// Key of the metadata: the last tick in which a fork is equal to its log.
 pub const FORKED_AFTER: &str = "forked_after";
-/// Key: the changes of a fork.
-pub const CHANGES: &str = "changes";
+pub const CHANGES: &str = "changes"; // key: the changes of a fork
 
-/// Errors of repeating a recorded run.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RepeatError {
@@ -46,8 +44,7 @@ pub enum RepeatError {
         "the log is that of a fork, after tick {tick} with {changes}: fork the log that it came from, with all changes"
     )]
     Fork {
-        /// The last tick in which the fork is equal to its log.
-        tick: String,
+        tick: String, // the last tick in which the fork is equal to its log
         changes: String,
     },
     /// A file name of the log leads out of the directory.
@@ -55,16 +52,12 @@ pub enum RepeatError {
         "the log holds a file named {0}, which leads out of its directory: a name without .. and / was expected"
     )]
     Name(String),
-    /// A file of the log cannot be written.
     #[error("{} cannot be written: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },
 }
 
-/// Write the files of a log into an empty directory, and return the configuration to run them, without a log
-/// and shared memory.
-///
-/// # Errors
-/// [`RepeatError`] if the log does not contain the whole run.
+/// Write the files of a log into an empty directory, and return the configuration to run them, without a log and
+/// shared memory. Fails if the log does not contain the whole run.
 pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
     if let Some(part) = log.part() {
         return Err(RepeatError::Part(part));

@@ -31,23 +31,19 @@ use crate::operator::Requests;
 #[derive(Clone, Debug, Serialize)]
 pub struct CommandResult {
     pub text: String,
-    /// `finished`, `error` or `executing`.
-    pub status: &'static str,
+    pub status: &'static str, // `finished`, `error` or `executing`
     /// The unconfirmed goals of a finished command; not written if the sensors confirm them.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub unconfirmed: &'static str,
-    /// Ticks from sending the command to detecting its end.
-    pub ticks: u64,
+    pub ticks: u64, // ticks from sending the command to detecting its end
 }
 
 /// A failed command that was repeated.
 #[derive(Clone, Debug, Serialize)]
 pub struct RetryResult {
-    /// Tick in which the failure was detected.
-    pub tick: u64,
+    pub tick: u64, // tick in which the failure was detected
     pub text: String,
     pub reason: &'static str,
-    /// Number of the retry for this line, from 1.
     pub number: u32,
 }
 
@@ -62,20 +58,16 @@ pub fn bare(line: &str) -> String {
     line.trim_start_matches("==").trim_start().to_owned()
 }
 
-/// What went wrong in a run: in its result, and attached to its log.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct FailureResult {
-    /// The first failure and its consequences.
     #[serde(flatten)]
     pub account: Account,
-    /// The line of the job, or the command, in progress at the first failure.
-    pub line: Option<String>,
+    pub line: Option<String>, // the line of the job, or the command, in progress at the first failure
     /// The operator's action before the job can continue; `None` if PAUSE and the same command may be enough.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub remedy: Option<String>,
-    /// What led to the failure; `None` in a log of an older program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub chain: Option<Chain>,
+    pub chain: Option<Chain>, // what led to the failure; `None` in a log of an older program
 }
 
 impl FailureResult {
@@ -97,90 +89,69 @@ impl FailureResult {
 pub const SIMULATED: &str =
     "parts, contacts, clearance and events are those of the simulated cell, which follows the robot";
 
-/// The result of a run. The names of the fields are those of the JSON object.
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct RunResult {
     pub job: String,
-    /// How the run ended: `finished`, `stopped` or `failed`.
-    pub ending: &'static str,
-    /// The task data and the cell description.
+    pub ending: &'static str, // how the run ended: `finished`, `stopped` or `failed`
     pub data: DataResult,
-    /// Commands that were sent to Task.
     pub commands: Vec<CommandResult>,
-    /// Commands that failed and were repeated after a PAUSE (`--retry`).
-    pub retries: Vec<RetryResult>,
-    /// Requests of operators, if any.
+    pub retries: Vec<RetryResult>, // commands that failed and were repeated after a PAUSE (`--retry`)
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub operator: Option<Requests>,
-    /// The couplers between controller and cell; `None` without `--field`.
+    pub operator: Option<Requests>, // requests of operators, if any
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub field: Option<FieldResult>,
-    /// Number of ticks, without those in which the robot was brought to rest.
-    pub ticks: u64,
-    /// Number of ticks in which the robot was brought to rest at the end.
-    pub ramp_ticks: u32,
+    pub field: Option<FieldResult>, // the couplers between controller and cell; `None` without `--field`
+    pub ticks: u64,                // number of ticks, without those in which the robot was brought to rest
+    pub ramp_ticks: u32,           // number of ticks in which the robot was brought to rest at the end
     pub simulated_s: f64,
     pub wall_s: f64,
-    /// Ratio of simulated time to wall-clock time.
-    pub realtime_factor: f64,
-    /// Number of skipped slots of the 40 ms grid.
-    pub overruns: u64,
+    pub realtime_factor: f64, // ratio of simulated time to wall-clock time
+    pub overruns: u64,        // number of skipped slots of the 40 ms grid
     /// The same by cause: a part of the tick before, or `waking` if the system woke the thread late.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub overruns_by: BTreeMap<String, u64>,
-    /// Heap allocations of the controller after the start.
-    pub allocations_after_start: Option<u64>,
+    pub allocations_after_start: Option<u64>, // heap allocations of the controller after the start
     pub tick_us: TickTimes,
     /// Times of all parts of a tick: control processes by name, and the parts of the executive.
     pub part_us: BTreeMap<String, TickTimes>,
-    /// Lateness of the ticks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub late_us: Option<TickTimes>,
-    /// The real-time settings that the system granted, and the system.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub realtime: Option<String>,
+    pub realtime: Option<String>, // the real-time settings that the system granted, and the system
     /// The boards, if there is more than one; `tick_us` is then the time from the pulse to the last stamp.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boards: Option<Vec<BoardResult>>,
     pub link: LinkResult,
-    /// Injected faults of the line from `--faults`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub faults: Option<FaultsResult>,
+    pub faults: Option<FaultsResult>, // injected faults of the line from `--faults`
     /// Faults of the cell that occurred, in the order of the file; empty without `--faults`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cell_faults: Vec<CellFaultResult>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub port: Option<PortResult>,
-    /// Counts and times of the line to a robot with EGM.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub egm: Option<EgmResult>,
+    pub egm: Option<EgmResult>, // counts and times of the line to a robot with EGM
     /// The last emergency, if any, even if the robot was restarted after it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub emergency_stop: Option<EmergencyResult>,
-    /// Fingerprint of all output buffers of all ticks.
-    pub digest: String,
+    pub digest: String, // fingerprint of all output buffers of all ticks
     /// The same without the ticks in which the robot was brought to rest; it does not depend on the clock.
     pub digest_before_ramp: String,
     /// Note about the statements that refer to the simulated cell, if the robot is not simulated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulated: Option<&'static str>,
     pub parts: Vec<PartState>,
-    /// Items of the MBD in the Data System.
-    pub data_base: Vec<ItemResult>,
+    pub data_base: Vec<ItemResult>, // items of the MBD in the Data System
     /// The judge of confirmations: number of commands of all levels that were reported as finished, and the
     /// false reports.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<TruthResult>,
-    /// Prohibited contacts.
-    pub contacts: Vec<Collision>,
-    /// The nearest miss, if a distance was less than 2 in.
+    pub contacts: Vec<Collision>, // prohibited contacts
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub clearance: Option<NearMiss>,
+    pub clearance: Option<NearMiss>, // the nearest miss, if a distance was less than 2 in
     pub events: Events,
     /// Path of the log; `None` without a log, or if the log ended before the run did.
     pub log: Option<PathBuf>,
-    /// The failure, if the run failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<FailureResult>,
 }

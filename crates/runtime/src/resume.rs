@@ -21,22 +21,17 @@ use crate::{
     error::StartError,
 };
 
-/// Greatest length of a saved cell, bytes.
-const LARGEST_CELL: u64 = 64 << 20;
+const LARGEST_CELL: u64 = 64 << 20; // greatest length of a saved cell, bytes
 
-/// Ticks for which a simulated cell is without power: 2 s.
-const OUTAGE: u64 = 50;
+const OUTAGE: u64 = 50; // ticks for which a simulated cell is without power: 2 s
 /// Ticks by which the saved cell may be older than the last entry: ten seconds, for a disk that is busy.
 const OLDEST_CELL: u64 = 10 * HEARTBEAT;
 
-/// The knowledge of an earlier run.
 pub struct Resumed {
     path: PathBuf,
     contents: Contents,
-    /// The cell that the run simulates, as saved.
     cell: Vec<u8>,
-    /// The robot is simulated, too.
-    is_simulated: bool,
+    is_simulated: bool, // the robot is simulated, too
 }
 
 /// The time of day, ms since 1970.
@@ -45,7 +40,6 @@ pub fn now() -> u64 {
     u64::try_from(since.as_millis()).unwrap_or(u64::MAX)
 }
 
-/// The entry after the last tick.
 pub fn entry(closed: &ClosedLoop<Controller>, job: Option<&Hwsc>, written: u64) -> Entry {
     let PlaceInJob { line, is_begun, delayed } = job.map(Hwsc::place_in_job).unwrap_or_default();
     Entry {
@@ -84,10 +78,7 @@ pub fn identity(config: &RunConfig, store: &Store, job: &Job, cell: &str) -> Ide
 }
 
 impl Resumed {
-    /// Read the journal of a configuration, if it names one.
-    ///
-    /// # Errors
-    /// [`StartError`] if it cannot be used, or the run cannot be resumed.
+    /// Read the journal of a configuration, if it names one. Fails if it cannot be used, or the run cannot be resumed.
     pub fn load(config: &RunConfig) -> Result<Option<Self>, StartError> {
         let Some(path) = &config.resume else { return Ok(None) };
         if config.boards != Boards::One {
@@ -130,10 +121,8 @@ impl Resumed {
         PlaceInJob { line, is_begun: begun, delayed }
     }
 
-    /// The simulated cell, as it was saved.
-    ///
-    /// # Errors
-    /// [`StartError::ResumedCell`] if it is of another description or version.
+    /// The simulated cell, as it was saved. Errors: [`StartError::ResumedCell`] if it is of another description or
+    /// version.
     pub fn cell(&self, description: &CellDescription) -> Result<Cell, StartError> {
         let path = journal::cell_beside(&self.path);
         let failed = |error: RestoreError| StartError::ResumedCell { path, why: error.to_string() };
@@ -147,10 +136,7 @@ impl Resumed {
         Ok(cell)
     }
 
-    /// Compare the run of the journal with this one.
-    ///
-    /// # Errors
-    /// [`StartError::OtherJournal`] with all differences.
+    /// Compare the run of the journal with this one. Errors: [`StartError::OtherJournal`] with all differences.
     pub fn check(&self, identity: &Identity) -> Result<(), StartError> {
         let differences = differences(&self.contents.identity, identity);
         if differences.is_empty() {
@@ -159,7 +145,6 @@ impl Resumed {
         Err(StartError::OtherJournal { path: self.path.clone(), differences })
     }
 
-    /// Give the controller its knowledge.
     pub fn start(&self, closed: &mut ClosedLoop<Controller>) {
         let entry = self.entry();
         let memory = self.contents.memory(entry.tick);

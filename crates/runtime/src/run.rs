@@ -64,8 +64,7 @@ pub struct Run {
     observer: Box<dyn Observer>,
     pub(crate) job: Job,
     pub(crate) closed: ClosedLoop<Controller>,
-    /// Mirrors the status; it must be dropped before the publisher of `runner`.
-    mirror: Option<Mirror>,
+    mirror: Option<Mirror>, // mirrors the status; it must be dropped before the publisher of `runner`
     pub(crate) runner: Runner<Controller>,
     pub(crate) neighbours: Neighbours,
     pub(crate) asked: Inputs,
@@ -73,37 +72,27 @@ pub struct Run {
     pub(crate) loads: Loads,
     pub(crate) name: RunName,
     pub(crate) robot: Robot,
-    /// The couplers over TCP, if any.
-    pub(crate) field: Option<FieldPort>,
+    pub(crate) field: Option<FieldPort>, // the couplers over TCP, if any
     pub(crate) log: Option<Log>,
     log_path: Option<PathBuf>,
-    /// The journal, for a start after a loss of power.
     journal: Option<Journal>,
     data: DataResult,
     live: Option<Live>,
     pace: Pace,
-    /// Time when the first tick was due.
     started: Option<Instant>,
     ending: Option<Ending>,
-    /// The last warning on the screen of the robot controller.
-    pub(crate) warning: Option<Failure>,
-    /// Emergencies, fallen parts, and failed devices of the cell.
-    pub(crate) alarms: Alarms,
-    /// The status of Task after the last tick.
+    pub(crate) warning: Option<Failure>, // the last warning on the screen of the robot controller
+    pub(crate) alarms: Alarms,           // emergencies, fallen parts, and failed devices of the cell
     task: HwsStatus,
-    /// What the processes did, for the chain of a failure.
-    history: History,
-    /// The state of the cell for other programs.
+    history: History, // what the processes did, for the chain of a failure
     view: Box<View>,
     /// The states of the run that were logged last, and the reason why the job waits, if it does.
     viewed: Viewed,
     waits: Option<WaitReason>,
-    /// Events of the cell since the last tick, for the log of the next one.
-    fresh: Vec<Event>,
+    fresh: Vec<Event>, // events of the cell since the last tick, for the log of the next one
     events: Events,
     rest: RestWatch,
-    /// The end of the run for which the robot is brought to rest.
-    ramp: Option<Ramp>,
+    ramp: Option<Ramp>, // the end of the run for which the robot is brought to rest
     /// Ticks for which the host waits for an answer. At a port it waits for the first answer as long as `--wait`.
     silence_limit: Option<u16>,
     first_silence_limit: Option<u16>,
@@ -150,13 +139,11 @@ impl Run {
         &mut self.closed.workstation.cell
     }
 
-    /// All buffers after the last tick.
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
         self.closed.memory()
     }
 
-    /// The external inputs of the last tick.
     #[must_use]
     pub const fn external_inputs(&self) -> &ExternalInputs {
         self.closed.external()
@@ -228,7 +215,6 @@ impl Run {
         }
     }
 
-    /// Run one tick. Returns the ending if the run ends with it.
     fn tick(&mut self) -> Option<Ending> {
         self.wait();
         let robot = self.robot.receive();
@@ -334,7 +320,6 @@ impl Run {
         }
     }
 
-    /// The position of a robot outside the cell; `None` for the simulated one.
     fn moved(&mut self) -> Option<Plate> {
         let levels = self.closed.course().levels();
         self.robot.moved(|| acknowledged(&levels.state()))
@@ -353,7 +338,6 @@ impl Run {
         Failure { stopped: true, ..failure }
     }
 
-    /// Put the task data that the job has loaded into effect, if no command is in progress.
     fn reload(&mut self) {
         if self.closed.reload() {
             self.log_reload();

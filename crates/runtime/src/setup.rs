@@ -66,32 +66,20 @@ pub struct Setup {
     pub description_text: String,
     pub description: CellDescription,
     pub cell: Cell,
-    /// The couplers between the controller and the cell.
     pub field: Option<Couplers>,
-    /// The mapping of the couplers, as text; empty without one.
     pub mapping_text: String,
-    /// Text of the fault file; empty without one.
-    pub faults_text: String,
-    /// Faults of the line to the simulated robot.
+    pub faults_text: String, // text of the fault file; empty without one
     pub line_faults: Option<Plan>,
-    /// The other end of the DEPC line.
     pub robot: Robot,
-    /// The source of commands, and the Data System.
-    pub neighbours: Neighbours,
-    /// File of the log, if any.
+    pub neighbours: Neighbours, // the source of commands, and the Data System
     pub log: Option<LogFile>,
     pub live: Option<Live>,
-    /// The journal that the run writes.
     pub journal: Option<Journal>,
-    /// The knowledge with which the controller starts.
     pub resumed: Option<Resumed>,
 }
 
 impl Setup {
-    /// Read, check and build everything.
-    ///
-    /// # Errors
-    /// [`StartError`], with all errors of the data.
+    /// Read, check and build everything. Errors: [`StartError`], with all errors of the data.
     pub fn load(
         config: &RunConfig,
         own: Option<Box<dyn OwnRobot>>,
@@ -203,15 +191,12 @@ impl Setup {
 /// The couplers of a run before its first tick.
 pub enum Couplers {
     Simulated(SimulatedField),
-    /// Couplers over TCP, which may not be ready yet.
-    Tcp(FieldPort),
+    Tcp(FieldPort), // couplers over TCP, which may not be ready yet
 }
 
 impl Couplers {
-    /// Wait until all devices are ready. Returns the port of couplers over TCP, too.
-    ///
-    /// # Errors
-    /// The errors of [`FieldPort::gather`].
+    /// Wait until all devices are ready. Returns the port of couplers over TCP, too. Errors: the errors of
+    /// [`FieldPort::gather`].
     pub fn gather(
         self,
         config: &RunConfig,
@@ -228,26 +213,19 @@ impl Couplers {
     }
 }
 
-/// The data of the control processes on every board.
 pub struct TaskFiles {
     pub store: Store,
-    /// The job, with the task data that it loads during the run.
     pub job: Job,
-    /// Path of the job's file; empty without a job.
     pub job_path: PathBuf,
-    /// The findings in the task data.
     in_data: Diagnostics,
     in_job: Diagnostics,
-    /// The line about an omitted job with errors.
-    left_out: Option<String>,
+    left_out: Option<String>, // the line about an omitted job with errors
 }
 
 impl TaskFiles {
-    /// Read and check task data and job. Without a job there are no steps: another process commands. Task data
-    /// with errors are used too: [`Store::faults`]. If `is_lenient`, a job with errors is omitted.
-    ///
-    /// # Errors
-    /// [`StartError`], with all errors of the job.
+    /// Read and check task data and job. Without a job there are no steps: another process commands. Task data with
+    /// errors are used too: [`Store::faults`]. If `is_lenient`, a job with errors is omitted. Errors: [`StartError`],
+    /// with all errors of the job.
     pub fn load(data: &Path, job: Option<&str>, is_lenient: bool) -> Result<Self, StartError> {
         if !files::is_directory(data) {
             return Err(StartError::NoData(data.to_owned()));
@@ -273,20 +251,16 @@ impl TaskFiles {
     }
 }
 
-/// The cell description of a data directory.
 pub struct CellFile {
     pub text: String,
     pub description: CellDescription,
-    /// The findings of task data, job and description that do not prevent the run.
-    pub findings: Findings,
+    pub findings: Findings, // the findings of task data, job and description that do not prevent the run
 }
 
 impl CellFile {
     /// Read the description, and check that task data, job and description describe the same cell. An error of a form
     /// of the task data is added to [`Store::faults`]. If `is_lenient`, errors of entries of the cell are tolerated.
-    ///
-    /// # Errors
-    /// [`StartError`], with all errors.
+    /// Errors: [`StartError`], with all errors.
     pub fn load(data: &Path, task: &mut TaskFiles, is_lenient: bool) -> Result<Self, StartError> {
         let TaskFiles { store, job, job_path, in_data, in_job, .. } = task;
         let path = data.join(CELL);
@@ -393,10 +367,7 @@ fn faults(config: &RunConfig, cell: &CellDescription) -> Result<(FaultFile, Stri
     Ok((faults, text))
 }
 
-/// Read a fault file. Also returns its text.
-///
-/// # Errors
-/// [`StartError`], with all errors of the file.
+/// Read a fault file. Also returns its text. Errors: [`StartError`], with all errors of the file.
 pub fn fault_file(path: &Path, cell: &CellDescription) -> Result<(FaultFile, String), StartError> {
     let text = files::read_text(path).map_err(|source| StartError::Read { path: path.to_owned(), source })?;
     let source = Source { name: path.display().to_string(), text: text.clone().into() };

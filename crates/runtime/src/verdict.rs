@@ -20,10 +20,8 @@ const EXPLAINS_TICKS: u64 = RESTART_TICKS;
 
 pub enum Ending {
     Finished,
-    /// Ended as configured: at `--ticks`, or, without a job of its own, by a request to stop.
-    Stopped,
-    /// Stopped by the user before the job had finished.
-    StoppedByUser,
+    Stopped, // ended as configured: at `--ticks`, or, without a job of its own, by a request to stop
+    StoppedByUser, // stopped by the user before the job had finished
     Failed(Account),
 }
 

@@ -27,27 +27,19 @@ use crate::{
 
 /// The sources of the states.
 pub struct Around<'a> {
-    /// The last tick.
     pub tick: Tick,
-    /// Common memory after that tick.
     pub memory: &'a CommonMemory,
     pub neighbours: &'a Neighbours,
     pub operator: &'a Operator,
     pub job: &'a str,
-    /// Number of jobs that operators have played.
-    pub played: u32,
-    /// The reason why the job waits, if it does.
-    pub waits: Option<&'a WaitReason>,
+    pub played: u32,                   // number of jobs that operators have played
+    pub waits: Option<&'a WaitReason>, // the reason why the job waits, if it does
     pub cell: &'a Cell,
-    /// True if the robot controller is that of the cell, not one outside.
-    pub has_controller: bool,
-    /// The last warning on the screen of the robot controller.
-    pub warning: Option<&'a Failure>,
-    /// The couplers, if any.
+    pub has_controller: bool, // the robot controller is that of the cell, not one outside
+    pub warning: Option<&'a Failure>, // the last warning on the screen of the robot controller
     pub field: Option<&'a Desk>,
 }
 
-/// The states that were logged last.
 #[derive(Default)]
 pub struct Viewed {
     last: [Option<View>; KINDS],
@@ -135,7 +127,6 @@ pub fn job_state(neighbours: &Neighbours, waits: Option<&WaitReason>) -> JobStat
     }
 }
 
-/// Who commands the robot.
 pub fn commander(neighbours: &Neighbours, operator: &Operator, memory: &CommonMemory) -> Commander {
     let (operator, connected, is_stopped) = operator.present();
     let waits = neighbours.job().is_some_and(Hwsc::is_waiting);

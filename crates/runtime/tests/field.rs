@@ -21,7 +21,6 @@ const LOST: [&str; 6] = [
     "cell.gripper-torn",
 ];
 
-/// A linkbar with the couplers of the shipped mapping.
 fn config() -> RunConfig {
     RunConfig {
         log: LogTarget::None,
@@ -31,9 +30,8 @@ fn config() -> RunConfig {
     }
 }
 
-/// Records the codes of the events.
 #[derive(Clone, Default)]
-struct Codes(Arc<Mutex<Vec<&'static str>>>);
+struct Codes(Arc<Mutex<Vec<&'static str>>>); // records the codes of the events
 
 impl Observer for Codes {
     fn event(&mut self, _: Tick, event: &Event) {
@@ -107,7 +105,6 @@ fn couplers_without_a_fault_leave_the_cell_unchanged() {
     assert!(field.devices.iter().all(|device| device.confirmed), "safe outputs at the end: {field}");
 }
 
-/// The failure of a run as text; empty if it has finished.
 fn failure(outcome: &RunOutcome) -> String {
     if let Ending::Failed(account) = &outcome.ending { account.to_string() } else { String::new() }
 }

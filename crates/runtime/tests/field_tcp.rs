@@ -27,12 +27,9 @@ const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
 const DEVICES: [(&str, &str); 3] =
     [("arm", "127.0.0.1:21502"), ("fixture", "127.0.0.1:21503"), ("pedestal", "127.0.0.1:21504")];
 const ARM: usize = 0;
-/// Registers of the emulated couplers: inputs, outputs.
-const WORDS: (u16, u16) = (32, 16);
-/// `grip.supply` in the first output word of the arm.
-const SUPPLY: u16 = 1 << 7;
-/// Ticks of a run in real time: one second.
-const TICKS: u64 = 25;
+const WORDS: (u16, u16) = (32, 16); // registers of the emulated couplers: inputs, outputs
+const SUPPLY: u16 = 1 << 7; // `grip.supply` in the first output word of the arm
+const TICKS: u64 = 25; // ticks of a run in real time: one second
 
 /// Three couplers, and the shipped mapping with their addresses.
 struct Couplers {

@@ -94,7 +94,6 @@ fn say(socket: &mut WebSocket<TcpStream>, message: Value) {
     socket.send(Message::text(message.to_string())).unwrap();
 }
 
-/// The close code that the server sends.
 fn close_code(socket: &mut WebSocket<TcpStream>) -> CloseCode {
     loop {
         match socket.read() {
@@ -311,7 +310,6 @@ fn oversized_messages_and_invalid_frames_close_the_connection() {
     connect(server.address());
 }
 
-/// Checks that the server ends a connection.
 fn ends(stream: &mut TcpStream) {
     let mut rest = Vec::new();
     if let Err(error) = stream.read_to_end(&mut rest) {
@@ -387,8 +385,7 @@ fn only_clients_that_do_not_read_are_disconnected() {
     assert!(longest < sent / 2, "a message took {longest:?} to be sent");
 }
 
-/// A connection that reads at most 100 kB/s.
-struct Slow(TcpStream);
+struct Slow(TcpStream); // a connection that reads at most 100 kB/s
 
 impl Read for Slow {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {

@@ -34,7 +34,6 @@ pub fn login(cell: &dyn Display, wrong: Option<&str>) -> String {
     document(&escaped(&format!("Cell {cell}")), &(wrong + form), false)
 }
 
-/// The page of a person who is logged in.
 #[must_use]
 pub fn logged_in(cell: &dyn Display, person: &Person) -> String {
     let body = format!(

@@ -4,8 +4,7 @@ use std::{io, time::Instant};
 
 use crate::page::tls::Tls;
 
-/// Greatest length of a request with its headers, and of a form, bytes.
-const HEAD: usize = 16 * 1024;
+const HEAD: usize = 16 * 1024; // greatest length of a request with its headers, and of a form, bytes
 const FORM: usize = 1024;
 const HEADERS: usize = 64;
 /// The cookie of a login. Browsers accept this prefix only from the same host, by TLS, for all paths.
@@ -21,26 +20,19 @@ pub type Refusal = (&'static str, String);
 
 pub const BAD: &str = "400 Bad Request";
 
-/// What a browser asks for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Request {
     pub is_post: bool,
     pub path: String,
     pub host: String,
     pub origin: Option<String>,
-    /// Identifier of a login.
-    pub cookie: Option<String>,
+    pub cookie: Option<String>, // identifier of a login
     pub form: Vec<u8>,
-    /// Headers of a WebSocket, as the run gets them; `None` for a page.
-    pub upgrade: Option<String>,
-    /// Bytes after the request.
-    pub rest: Vec<u8>,
+    pub upgrade: Option<String>, // headers of a WebSocket, as the run gets them; `None` for a page
+    pub rest: Vec<u8>, // bytes after the request
 }
 
-/// Reads a request, at most until a time.
-///
-/// # Errors
-/// A refusal; or the error of the connection.
+/// Reads a request, at most until a time. Errors: a refusal; or the error of the connection.
 pub fn read(tls: &mut Tls, until: Instant) -> io::Result<Result<Request, Refusal>> {
     let (mut bytes, mut part) = (Vec::new(), [0; 4096]);
     loop {
@@ -102,7 +94,6 @@ fn parse(bytes: &[u8]) -> Result<Option<Request>, Refusal> {
     }))
 }
 
-/// The only header with a name.
 fn one<'a>(headers: &[httparse::Header<'a>], name: &str) -> Result<Option<&'a str>, Refusal> {
     let mut found = headers.iter().filter(|header| header.name.eq_ignore_ascii_case(name));
     let first = found.next().map(|header| std::str::from_utf8(header.value).map(str::trim));
@@ -130,7 +121,6 @@ fn upgrade(headers: &[httparse::Header<'_>]) -> Result<String, Refusal> {
     Ok(text)
 }
 
-/// An answer with a page of the gateway.
 #[must_use]
 pub fn answer(status: &str, extra: &str, body: &str) -> Vec<u8> {
     let length = body.len();

@@ -9,17 +9,13 @@ use std::{
 
 use crate::budget::Budget;
 
-/// Greatest number of connections without a login, and of one address.
-const CONNECTIONS: usize = 64;
+const CONNECTIONS: usize = 64; // greatest number of connections without a login, and of one address
 const OF_ADDRESS: usize = 8;
-/// Failed tries of an address at once, and the time after which it may try once more.
-const TRIES: u32 = 5;
+const TRIES: u32 = 5; // failed tries of an address at once, and the time after which it may try once more
 const AGAIN: Duration = Duration::from_secs(30);
-/// The same of all addresses.
-const ALL_TRIES: u32 = 30;
+const ALL_TRIES: u32 = 30; // the same of all addresses
 const ALL_AGAIN: Duration = Duration::from_secs(2);
-/// Greatest number of addresses whose failed tries are remembered.
-const ADDRESSES: usize = 1024;
+const ADDRESSES: usize = 1024; // greatest number of addresses whose failed tries are remembered
 
 /// The address of a client. A client with IPv6 has many addresses with the same first half.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,7 +30,6 @@ impl From<IpAddr> for Source {
     }
 }
 
-/// Connections without a login, by address.
 #[derive(Clone, Default)]
 pub struct Strangers(Arc<Mutex<BTreeMap<Source, usize>>>);
 
@@ -73,7 +68,6 @@ impl Drop for Stranger {
     }
 }
 
-/// Failed tries to log in.
 pub struct Tries(Mutex<(Budget, BTreeMap<Source, Budget>)>);
 
 impl Default for Tries {
@@ -108,7 +102,6 @@ impl Tries {
         is_allowed
     }
 
-    /// The last try of an address was successful.
     pub fn succeeded(&self, source: Source) {
         let (total, own) = &mut *self.lock();
         total.give_back();

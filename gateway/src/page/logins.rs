@@ -12,19 +12,14 @@ use subtle::ConstantTimeEq as _;
 
 use crate::{keyspace::random_digits, page::people::Person};
 
-/// A login ends after this time: a long shift.
-pub const VALIDITY: Duration = Duration::from_secs(12 * 3600);
-/// Greatest number of logins, and of one person.
-const LOGINS: usize = 64;
+pub const VALIDITY: Duration = Duration::from_secs(12 * 3600); // a login ends after this time: a long shift
+const LOGINS: usize = 64; // greatest number of logins, and of one person
 const OF_PERSON: usize = 8;
 /// Greatest number of connections of a login: the page, its WebSocket, and those of a few tabs.
 const CONNECTIONS: usize = 6;
 
-/// A person who has shown the secret.
 pub struct Login {
-    /// What the browser keeps as a cookie: 128 random bits.
-    pub id: String,
-    /// The person.
+    pub id: String, // what the browser keeps as a cookie: 128 random bits
     pub person: Person,
     until: Instant,
     is_over: AtomicBool,
@@ -39,8 +34,7 @@ impl Login {
     }
 }
 
-/// A connection of a login. It counts until it is dropped.
-pub struct Connection(pub Arc<Login>);
+pub struct Connection(pub Arc<Login>); // a connection of a login; it counts until it is dropped
 
 impl Connection {
     /// Another connection of a login; `None` if it has too many.
@@ -58,7 +52,6 @@ impl Drop for Connection {
     }
 }
 
-/// All logins, the oldest first.
 #[derive(Default)]
 pub struct Logins(Mutex<Vec<Arc<Login>>>);
 
@@ -67,10 +60,8 @@ impl Logins {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Logs a person in. The oldest login of a person with too many ends, or the oldest of all.
-    ///
-    /// # Errors
-    /// If the system has no random bytes.
+    /// Logs a person in. The oldest login of a person with too many ends, or the oldest of all. Fails if the system
+    /// has no random bytes.
     pub fn open(&self, person: Person, now: Instant) -> Result<Arc<Login>, getrandom::Error> {
         let (is_over, open) = (AtomicBool::new(false), AtomicUsize::new(0));
         let login = Arc::new(Login { id: random_digits()?, person, until: now + VALIDITY, is_over, open });

@@ -49,14 +49,10 @@ use crate::{
 
 /// Time limit for the handshake and the request of a connection.
 const REQUEST: Duration = Duration::from_secs(5);
-/// Time limit for reading an answer.
-const ANSWER: Duration = Duration::from_secs(5);
-/// Time between two looks at the file of persons.
-const LOOK: Duration = Duration::from_millis(500);
-/// Pause after a connection that could not be accepted.
-const PAUSE: Duration = Duration::from_millis(100);
+const ANSWER: Duration = Duration::from_secs(5); // time limit for reading an answer
+const LOOK: Duration = Duration::from_millis(500); // time between two looks at the file of persons
+const PAUSE: Duration = Duration::from_millis(100); // pause after a connection that could not be accepted
 
-/// What the threads of all connections share.
 struct Gateway {
     cell: Name,
     run: PathBuf,
@@ -65,24 +61,16 @@ struct Gateway {
     logins: Logins,
     strangers: Strangers,
     tries: Tries,
-    /// One secret is checked at a time: a check takes 19 MB and tens of milliseconds.
-    checking: Mutex<()>,
+    checking: Mutex<()>, // one secret is checked at a time: a check takes 19 MB and tens of milliseconds
 }
 
-/// What follows a request.
 enum Answer {
-    /// A page of the gateway.
     Own(Vec<u8>),
-    /// The page of the run.
     Page(Connection, UnixStream),
-    /// A WebSocket of the run, and the bytes after its request.
-    Live(Connection, UnixStream, Vec<u8>),
+    Live(Connection, UnixStream, Vec<u8>), // a WebSocket of the run, and the bytes after its request
 }
 
-/// Serves the page until a signal arrives.
-///
-/// # Errors
-/// [`Error`] if the keys, the persons or the endpoint cannot be used.
+/// Serves the page until a signal arrives. Fails if the keys, the persons or the endpoint cannot be used.
 pub fn page(arguments: &PageArguments) -> Result<(), Error> {
     let PageArguments { cell, endpoint, run, keys, people: path } = arguments;
     let tls = tls::config(&Keys::load(keys, cell)?)?;
@@ -244,7 +232,6 @@ impl Gateway {
         }
     }
 
-    /// Checks name and secret of a form.
     fn log_in(&self, form: &[u8], peer: IpAddr) -> Vec<u8> {
         let refuse = |status: &str, why: &str| http::answer(status, "", &forms::login(&self.cell, Some(why)));
         let (Some(name), Some(secret)) = (http::field(form, "name"), http::field(form, "secret")) else {

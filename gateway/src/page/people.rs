@@ -24,65 +24,44 @@ use crate::{
 const LONGEST: usize = 16;
 /// Letters of a secret: digits and letters that are not mistaken for each other (Crockford's base 32).
 const LETTERS: &[u8; 32] = b"0123456789abcdefghjkmnpqrstvwxyz";
-/// Number of letters of a secret, of five bits each, and of a group of them.
-const LENGTH: usize = 16;
+const LENGTH: usize = 16; // number of letters of a secret, of five bits each, and of a group of them
 const GROUP: usize = 4;
 
-/// Why the file of persons cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum PeopleError {
-    /// The file cannot be read or written.
     #[error("{}: {source}; rcs-gateway person add NAME --role ROLE --people FILE makes the file", .path.display())]
     File {
-        /// The file.
         path: PathBuf,
-        /// Error of the system.
         source: io::Error,
     },
-    /// Others can read or replace the hashes.
     #[error("{}: expected a file that only user {user} can read, found {found}: use chmod 600", .path.display())]
     Open {
-        /// The file.
         path: PathBuf,
-        /// This user.
         user: u32,
-        /// Owner or mode.
         found: String,
     },
-    /// A line has another form.
     #[error("{}:{line}: expected NAME ROLE HASH as rcs-gateway person writes them, found {found:?}", .path.display())]
     Line {
-        /// The file.
         path: PathBuf,
-        /// Number of the line, from 1.
         line: usize,
-        /// Its beginning, without the hash.
         found: String,
     },
-    /// A person with this name is there already.
     #[error("{}: {name} is there already; for a new secret, remove the person first", .path.display())]
     Known {
-        /// The file.
         path: PathBuf,
-        /// The name.
         name: PersonName,
     },
-    /// There is no person with this name.
     #[error("{}: expected one of its persons, found {name}; rcs-gateway person list prints them", .path.display())]
     Unknown {
-        /// The file.
         path: PathBuf,
-        /// The name.
         name: PersonName,
     },
-    /// The system has no random bytes.
     #[error("a secret cannot be made: {0}")]
     Secret(String),
 }
 
-/// The name of a person: 1 to 16 letters, digits, `-`, `_` and `.`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PersonName(Name);
+pub struct PersonName(Name); // the name of a person: 1 to 16 letters, digits, `-`, `_` and `.`
 
 impl FromStr for PersonName {
     type Err = String;
@@ -132,9 +111,7 @@ impl FromStr for Role {
 /// A person who may open the page. A new secret makes another person.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Person {
-    /// The name.
     pub name: PersonName,
-    /// The role.
     pub role: Role,
     hash: String,
 }
@@ -149,15 +126,11 @@ impl Person {
     }
 }
 
-/// All persons.
 #[derive(Clone, Default)]
 pub struct People(Vec<Person>);
 
 impl People {
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// [`PeopleError`] if it cannot be read, others can read it, or a line has another form.
+    /// Reads a file. Fails if it cannot be read, others can read it, or a line has another form.
     pub fn load(path: &Path) -> Result<Self, PeopleError> {
         let failed = |source| PeopleError::File { path: path.to_owned(), source };
         let text = files::read_text(path).map_err(failed)?;
@@ -246,9 +219,6 @@ fn random_secret() -> Result<String, PeopleError> {
 }
 
 /// Adds a person to a file, which is created if missing. Returns the secret, which is stored nowhere.
-///
-/// # Errors
-/// [`PeopleError`].
 pub fn add(path: &Path, name: &PersonName, role: Role) -> Result<String, PeopleError> {
     let failed = |source| PeopleError::File { path: path.to_owned(), source };
     match fs::OpenOptions::new().write(true).create_new(true).mode(0o600).open(path) {
@@ -269,9 +239,6 @@ pub fn add(path: &Path, name: &PersonName, role: Role) -> Result<String, PeopleE
 }
 
 /// Removes a person from a file.
-///
-/// # Errors
-/// [`PeopleError`].
 pub fn remove(path: &Path, name: &PersonName) -> Result<(), PeopleError> {
     let failed = |source| PeopleError::File { path: path.to_owned(), source };
     if People::load(path)?.named(name).is_none() {

@@ -18,26 +18,18 @@ use crate::{
     },
 };
 
-/// Bytes that are read at once, and most bytes that wait for the run.
-const CHUNK: usize = 16 * 1024;
+const CHUNK: usize = 16 * 1024; // bytes that are read at once, and most bytes that wait for the run
 /// A browser that reads nothing for this time is disconnected.
 const STALL: Duration = Duration::from_secs(10);
-/// Time after which the end of a login is seen.
-const LOOK: Duration = Duration::from_millis(200);
+const LOOK: Duration = Duration::from_millis(200); // time after which the end of a login is seen
 
-/// Why a connection has ended.
 #[derive(Debug)]
 pub enum Ended {
-    /// The browser has closed it.
     ByBrowser,
-    /// The run has closed it.
     ByRun,
-    /// The login has ended: logged out, removed, expired, or the gateway ends.
-    ByLogin,
-    /// The browser has read nothing for too long.
-    Stalled,
-    /// The line has failed.
-    Failed(io::Error),
+    ByLogin, // the login has ended: logged out, removed, expired, or the gateway ends
+    Stalled, // the browser has read nothing for too long
+    Failed(io::Error), // the line has failed
 }
 
 impl From<io::Error> for Ended {
@@ -58,15 +50,11 @@ impl fmt::Display for Ended {
     }
 }
 
-/// What the browser sends to the run.
 pub enum Upward {
-    /// Nothing: a page follows.
-    Nothing,
-    /// All bytes, and first those that are received already.
-    All(Vec<u8>),
+    Nothing, // nothing: a page follows
+    All(Vec<u8>), // all bytes, and first those that are received already
 }
 
-/// Passes bytes until one side or the login ends.
 pub fn pump(mut tls: Tls, run: &UnixStream, upward: Upward, login: &Login) -> Ended {
     let ended = match upward {
         Upward::Nothing => pass(&mut tls, run, Vec::new(), false, login),

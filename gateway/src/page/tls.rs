@@ -25,10 +25,8 @@ use crate::{error::Error, keys::Keys};
 /// Bytes that the system may keep for a client that reads slowly. More would only make the page late.
 const KEPT: usize = 128 * 1024;
 
-/// The configuration with the certificate of a cell.
-///
-/// # Errors
-/// [`Error::Tls`] if the certificate or the key cannot be used.
+/// The configuration with the certificate of a cell. Errors: [`Error::Tls`] if the certificate or the key cannot be
+/// used.
 pub fn config(keys: &Keys) -> Result<Arc<ServerConfig>, Error> {
     let failed = |reason: String| Error::Tls { certificate: keys.certificate.clone(), reason };
     let chain = CertificateDer::pem_file_iter(&keys.certificate).and_then(Iterator::collect);
@@ -42,21 +40,15 @@ pub fn config(keys: &Keys) -> Result<Arc<ServerConfig>, Error> {
     Ok(Arc::new(config))
 }
 
-/// A connection with a browser.
 pub struct Tls {
     socket: TcpStream,
     session: ServerConnection,
-    /// The other side sends nothing more.
-    is_ended: bool,
-    /// Bytes that the system has accepted.
-    sent: u64,
+    is_ended: bool, // the other side sends nothing more
+    sent: u64, // bytes that the system has accepted
 }
 
 impl Tls {
     /// A connection whose handshake follows.
-    ///
-    /// # Errors
-    /// Errors of the system.
     pub fn new(socket: TcpStream, config: Arc<ServerConfig>) -> io::Result<Self> {
         socket.set_nonblocking(true)?;
         socket.set_nodelay(true)?;
@@ -65,10 +57,8 @@ impl Tls {
         Ok(Self { socket, session, is_ended: false, sent: 0 })
     }
 
-    /// Sends what waits and receives what has arrived, without waiting.
-    ///
-    /// # Errors
-    /// Errors of the system, and a violation of TLS.
+    /// Sends what waits and receives what has arrived, without waiting. Errors: errors of the system, and a violation
+    /// of TLS.
     pub fn turn(&mut self) -> io::Result<()> {
         self.flush()?;
         while !self.is_ended && self.session.wants_read() {
@@ -104,9 +94,6 @@ impl Tls {
     }
 
     /// Takes received bytes: their number, 0 at the end, `None` if none have arrived.
-    ///
-    /// # Errors
-    /// Errors of the session.
     pub fn receive(&mut self, bytes: &mut [u8]) -> io::Result<Option<usize>> {
         match self.session.reader().read(bytes) {
             Ok(count) => Ok(Some(count)),
@@ -119,21 +106,16 @@ impl Tls {
     }
 
     /// Sends bytes; those that the system does not accept wait for the next [`Tls::turn`].
-    ///
-    /// # Errors
-    /// Errors of the system.
     pub fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.session.writer().write_all(bytes)?;
         self.flush()
     }
 
-    /// True if the system has accepted all bytes.
     #[must_use]
     pub fn is_flushed(&self) -> bool {
         !self.session.wants_write()
     }
 
-    /// Number of bytes that the system has accepted so far.
     #[must_use]
     pub const fn sent(&self) -> u64 {
         self.sent
@@ -151,10 +133,7 @@ impl Tls {
         self.socket.as_fd()
     }
 
-    /// Waits for received bytes, at most until a time.
-    ///
-    /// # Errors
-    /// [`ErrorKind::TimedOut`], and as [`Tls::turn`].
+    /// Waits for received bytes, at most until a time. Errors: [`ErrorKind::TimedOut`], and as [`Tls::turn`].
     pub fn receive_until(&mut self, bytes: &mut [u8], until: Instant) -> io::Result<usize> {
         loop {
             self.turn()?;
@@ -168,9 +147,7 @@ impl Tls {
     }
 
     /// Sends the last bytes and the end, and waits until the client has closed the connection, at most until a time.
-    ///
-    /// # Errors
-    /// As [`Tls::receive_until`].
+    /// Errors: as [`Tls::receive_until`].
     pub fn finish(mut self, bytes: &[u8], until: Instant) -> io::Result<()> {
         self.send(bytes)?;
         self.session.send_close_notify();
@@ -204,9 +181,6 @@ impl Tls {
 }
 
 /// Waits until a socket is ready; false if the time is over.
-///
-/// # Errors
-/// Errors of the system.
 pub fn wait(sockets: &mut [PollFd<'_>], until: Instant) -> io::Result<bool> {
     let left = until.saturating_duration_since(Instant::now());
     if left.is_zero() {

@@ -30,7 +30,6 @@ fn open(clock: ClockKind) -> (Session, Session) {
     (controller, neighbour)
 }
 
-/// A program at the far end of a socket.
 struct Program {
     session: Session,
     stream: UnixStream,
@@ -41,7 +40,6 @@ impl Program {
         self.stream.write_all(&std::mem::take(self.session.output())).unwrap();
     }
 
-    /// The next event, as text.
     fn event(&mut self) -> String {
         loop {
             match self.session.event(Instant::now()) {
@@ -58,7 +56,6 @@ impl Program {
         }
     }
 
-    /// Read up to the pulse of a tick.
     fn wait_for_pulse(&mut self, tick: u64) {
         while self.event() != format!("Pulse({tick})") {}
     }

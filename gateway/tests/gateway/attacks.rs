@@ -32,14 +32,12 @@ fn forged(pulse: u64) -> Vec<u8> {
     bytes
 }
 
-/// A sample that ends a claim.
 fn end() -> Vec<u8> {
     let mut bytes = Vec::new();
     frame::put(&mut bytes, frame::DISCONNECT, b"forged");
     bytes
 }
 
-/// What an attacker has heard.
 type Heard = Arc<Mutex<Vec<String>>>;
 
 /// Listens to the claim `id` of the victim, and answers in the place of the gateway. Returns what is heard, by key.
@@ -54,7 +52,6 @@ fn listen(listener: &Session, id: &str) -> (Heard, u32) {
     };
     let mut attacks = 0;
     let front = format!("rcs/{CELL}/workstation/{VICTIM}/{id}");
-    // Listening.
     for key in [
         format!("{front}/out"),
         format!("{front}/in"),
@@ -91,7 +88,6 @@ fn listen(listener: &Session, id: &str) -> (Heard, u32) {
 fn speak(session: &Session, id: &str) -> (Vec<String>, u32) {
     let (mut heard, mut attacks) = (Vec::new(), 0);
     let front = format!("rcs/{CELL}/workstation/{VICTIM}/{id}");
-    // Commands, and the end of the claim: direct, by wildcards, and to the neighbour.
     for key in [
         format!("{front}/in"),
         format!("rcs/{CELL}/workstation/{VICTIM}/*/in"),
@@ -112,7 +108,6 @@ fn speak(session: &Session, id: &str) -> (Vec<String>, u32) {
         drop(session.liveliness().declare_token(key).wait().unwrap());
         attacks += 1;
     }
-    // The status.
     session.put(format!("rcs/{CELL}/status/run"), "forged").wait().unwrap();
     attacks += 1;
     // A claim in the name of the victim, and by wildcard.
@@ -124,7 +119,6 @@ fn speak(session: &Session, id: &str) -> (Vec<String>, u32) {
                 Err(error) if error.payload().to_bytes().starts_with(b"refused") => {
                     heard.push("an answer".into());
                 }
-                // Time is up.
                 Err(_) => {}
             }
         }

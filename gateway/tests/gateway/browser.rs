@@ -19,25 +19,20 @@ use tungstenite::{
     Error, HandshakeError, Message, WebSocket, client::IntoClientRequest as _, http::HeaderValue,
 };
 
-/// The address of most browsers.
 pub const HERE: Ipv4Addr = Ipv4Addr::LOCALHOST;
-/// The service that takes any line of an operator.
-const REQUEST: u32 = 9;
+const REQUEST: u32 = 9; // the service that takes any line of an operator
 
 pub type Stream = StreamOwned<ClientConnection, TcpStream>;
 
 /// A browser, and the cookie of its login.
 pub struct Browser {
     config: Arc<ClientConfig>,
-    /// Where it connects, which may be a line that can be cut.
-    pub port: u16,
-    /// Host and port of the page.
-    pub host: String,
+    pub port: u16, // where it connects, which may be a line that can be cut
+    pub host: String, // host and port of the page
     from: Ipv4Addr,
     pub cookie: String,
 }
 
-/// An answer: status, headers and body.
 #[derive(Debug)]
 pub struct Answer {
     pub status: u16,
@@ -51,7 +46,6 @@ impl Browser {
         Self::from(keys, port, HERE)
     }
 
-    /// A browser at another address of this machine.
     pub fn from(keys: &Path, port: u16, from: Ipv4Addr) -> Self {
         let mut roots = RootCertStore::empty();
         roots.add(CertificateDer::from_pem_file(keys.join("ca.pem")).unwrap()).unwrap();
@@ -132,13 +126,11 @@ impl Browser {
         }
     }
 
-    /// The WebSocket of the page.
     pub fn live(&self) -> Result<Live, u16> {
         self.upgrade(&[("origin", &self.origin())])
     }
 }
 
-/// A connection from an address of this machine.
 pub fn tcp(from: Ipv4Addr, port: u16) -> io::Result<TcpStream> {
     let socket = socket_with(AddressFamily::INET, SocketType::STREAM, SocketFlags::CLOEXEC, None)?;
     bind(&socket, &SocketAddr::from((from, 0)))?;
@@ -148,7 +140,6 @@ pub fn tcp(from: Ipv4Addr, port: u16) -> io::Result<TcpStream> {
     Ok(stream)
 }
 
-/// The WebSocket of a page.
 #[derive(Debug)]
 pub struct Live {
     pub socket: WebSocket<Stream>,
@@ -176,14 +167,12 @@ impl Live {
         self.socket.send(Message::text(message.to_string())).unwrap();
     }
 
-    /// The value of a parameter.
     pub fn parameter(&mut self, name: &str) -> Value {
         self.say(&json!({ "op": "getParameters", "parameterNames": [name], "id": name }));
         let values = self.text(|text| (text["op"] == "parameterValues").then(|| text["parameters"].clone()));
         values.unwrap()[0]["value"].clone()
     }
 
-    /// The refusal of a message.
     pub fn refusal(&mut self, message: &Value) -> String {
         self.say(message);
         let status =

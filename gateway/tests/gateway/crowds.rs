@@ -16,9 +16,7 @@ use zenoh::Wait as _;
 
 use crate::shop::{Hwsc, Shop};
 
-/// Number of bad clients; as many of them as this connect again in a second.
-const CROWD: usize = 300;
-/// Number of threads with bad clients.
+const CROWD: usize = 300; // number of bad clients; as many of them as this connect again in a second
 const THREADS: usize = 4;
 
 /// How long an honest client needs while a crowd is there.

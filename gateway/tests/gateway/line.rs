@@ -11,7 +11,6 @@ use std::{
     time::Duration,
 };
 
-/// A line to a port.
 pub struct CutLine {
     pub port: u16,
     is_cut: Arc<AtomicBool>,
@@ -35,7 +34,6 @@ impl CutLine {
         Self { port: own, is_cut }
     }
 
-    /// Cut the line for a time.
     pub fn cut(&self, time: Duration) {
         self.is_cut.store(true, Ordering::SeqCst);
         thread::sleep(time);
@@ -51,7 +49,6 @@ fn pass(mut from: TcpStream, mut to: TcpStream, is_cut: &AtomicBool) {
             thread::sleep(Duration::from_millis(1));
         }
         if count == 0 || to.write_all(&bytes[..count]).is_err() {
-            // It may be closed already.
             let _ = to.shutdown(std::net::Shutdown::Both);
             let _ = from.shutdown(std::net::Shutdown::Both);
             return;

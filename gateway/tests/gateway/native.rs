@@ -44,12 +44,9 @@ pub fn connect(keys: &Path, name: &str, endpoint: &str) -> Result<Session, zenoh
     zenoh::open(config).wait()
 }
 
-/// An honest workstation controller that answers pulses and commands nothing.
 pub struct Claim {
     pub id: String,
-    /// The last pulse.
     pub pulse: Arc<AtomicU64>,
-    /// The last sample.
     pub sample: Arc<Mutex<Vec<u8>>>,
     _token: LivelinessToken,
     _subscriber: Subscriber<()>,
@@ -57,7 +54,6 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Claim the workstation of a cell.
     pub fn open(session: Session, cell: &str, name: &str, id: &str) -> Result<Self, String> {
         let front = format!("rcs/{cell}/workstation/{name}/{id}");
         let (samples, received) = channel::<Vec<u8>>();
@@ -118,7 +114,6 @@ impl Claim {
         found
     }
 
-    /// True if pulses arrive, and no end.
     pub fn is_alive(&self) -> bool {
         let before = self.pulse.load(Ordering::SeqCst);
         thread::sleep(Duration::from_millis(500));
@@ -134,7 +129,6 @@ pub fn rogue_gateway(keys: &Path, name: &str, endpoint: &str) -> Result<Session,
     listening("peer", keys, name, endpoint)
 }
 
-/// A router without access control.
 pub fn router(keys: &Path, name: &str, endpoint: &str) -> Result<Session, zenoh::Error> {
     listening("router", keys, name, endpoint)
 }

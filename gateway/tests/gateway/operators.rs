@@ -16,12 +16,10 @@ use crate::shop::{Shop, program, within};
 struct Operator {
     reader: BufReader<UnixStream>,
     number: u32,
-    /// Time of the run, and when it was read.
     time: (u64, Instant),
 }
 
 impl Operator {
-    /// Connect; `None` if the run has not begun.
     fn connect(shop: &Shop) -> Option<Self> {
         let mut stream = UnixStream::connect(shop.path("op-1.sock")).unwrap();
         stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
@@ -79,8 +77,7 @@ impl Operator {
 
 /// What an operator holds by hand.
 const HELD: [&str; 3] = ["joystick velocity 0", "joystick frame WORLD", "joystick stick 0 300 36000"];
-/// The answer to `leave` if something was held.
-const RELEASED: &str = "stick and buttons are released";
+const RELEASED: &str = "stick and buttons are released"; // the answer to `leave` if something was held
 
 impl Operator {
     /// Hold the stick for a while, with or without keep-alives; true if it was still held then.

@@ -19,7 +19,6 @@ use crate::{
     shop::{CELL, Process, Shop, program, within},
 };
 
-/// Other addresses of this machine.
 const OTHER: Ipv4Addr = Ipv4Addr::new(127, 0, 0, 2);
 const ATTACKER: Ipv4Addr = Ipv4Addr::new(127, 0, 0, 3);
 /// What an operator holds by hand, and the answer to `leave` if it was held.
@@ -47,7 +46,6 @@ impl Cell {
         Self { gateway, shop, secrets }
     }
 
-    /// A run with a page.
     fn run(&self, arguments: &[&str]) -> Process {
         let mut command = Command::new(program("rcs-run"));
         command.args(["linkbar", "--json", "--live", "0", "--log"]).arg(self.shop.path("run.mcap"));
@@ -72,7 +70,6 @@ impl Cell {
         Browser::from(&self.shop.path("keys"), self.shop.port, address)
     }
 
-    /// A browser in which a person is logged in.
     fn logged_in(&self, name: &str) -> Browser {
         let mut browser = self.browser();
         let secret = &self.secrets[usize::from(name == "vera")];
@@ -90,7 +87,6 @@ fn person(shop: &Shop, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Adds a person; returns the secret.
 fn add(shop: &Shop, name: &str, role: &str) -> String {
     person(shop, &["add", name, "--role", role]).lines().next().unwrap().to_owned()
 }

@@ -43,17 +43,14 @@ impl Process {
         Self { child: command.spawn().unwrap(), errors }
     }
 
-    /// What it has written to standard error.
     pub fn errors(&self) -> String {
         fs::read_to_string(&self.errors).unwrap()
     }
 
-    /// Wait until standard error has a text.
     pub fn wait_for(&self, text: &str) {
         assert!(within(10.0, || self.errors().contains(text)), "expected {text:?} in:\n{}", self.errors());
     }
 
-    /// Wait for the end.
     pub fn finish(&mut self, seconds: f64) -> ExitStatus {
         let child = &mut self.child;
         let mut status = None;
@@ -65,14 +62,11 @@ impl Process {
         status.unwrap()
     }
 
-    /// Kill it as `kill -9` does.
     pub fn kill(&mut self) {
-        // It may have ended already.
         let _ = self.child.kill();
         self.child.wait().unwrap();
     }
 
-    /// Send SIGTERM.
     pub fn terminate(&self) {
         let pid = rustix::process::Pid::from_child(&self.child);
         rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
@@ -101,19 +95,16 @@ pub fn within(seconds: f64, mut condition: impl FnMut() -> bool) -> bool {
     }
 }
 
-/// A free port of 127.0.0.1.
 pub fn free_port() -> u16 {
     TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
-/// A directory with keys, and a port for the gateway.
 pub struct Shop {
     pub directory: TempDir,
     pub port: u16,
 }
 
 impl Shop {
-    /// Keys for the cell and for `names`.
     pub fn new(names: &[&str]) -> Self {
         let shop = Self { directory: tempfile::tempdir().unwrap(), port: free_port() };
         make_keys(&shop.path("keys"), CELL, names);
@@ -153,21 +144,18 @@ impl Shop {
         self.run(&["--clock", "real", "--outside", "workstation"])
     }
 
-    /// The digest in the result of a run that is over.
     pub fn digest(&self) -> String {
         let result = fs::read_to_string(self.path("run.json")).unwrap();
         let result: serde_json::Value = serde_json::from_str(&result).unwrap();
         result["digest"].as_str().unwrap().to_owned()
     }
 
-    /// The gateway.
     pub fn serve(&self, allow: &[&str]) -> Process {
         let gateway = self.start_serve(allow);
         gateway.wait_for("t3 at tls/");
         gateway
     }
 
-    /// A router for this cell and the monitor `mes`.
     pub fn router(&self, endpoint: &str) -> Process {
         start_router(self.directory.path(), endpoint, &[CELL])
     }
@@ -222,7 +210,6 @@ impl Shop {
     }
 }
 
-/// A router with the certificate `router`, for cells and the monitor `mes`.
 pub fn start_router(directory: &Path, endpoint: &str, cells: &[&str]) -> Process {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-gateway"));
     command.args(["router", endpoint, "--name", "router", "--monitors", "mes", "--keys"]);
@@ -238,14 +225,12 @@ pub fn make_keys(directory: &Path, cell: &str, names: &[&str]) {
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
 }
 
-/// A workstation controller.
 pub struct Hwsc {
     session: Session,
     stream: UnixStream,
     command: Mailbox,
     status: Mailbox,
     tick: u64,
-    /// Number of the last command.
     number: u16,
 }
 
@@ -266,7 +251,6 @@ impl Hwsc {
         Ok(hwsc)
     }
 
-    /// Read up to the next pulse.
     fn read(&mut self) -> Result<(), String> {
         loop {
             match self.session.event(Instant::now()).map_err(|error| error.to_string())? {
@@ -352,7 +336,6 @@ impl Hwsc {
         Ok(())
     }
 
-    /// Wait until the last command is finished.
     pub fn finish(&mut self) -> Result<(), String> {
         while !self.is_reported("finished") {
             self.tick()?;

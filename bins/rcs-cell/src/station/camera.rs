@@ -18,16 +18,12 @@ use neighbours::{
 use os_io::stdout_line;
 use sessions::network::{Address, Peer, PeerError, Received, Role};
 
-/// Wait for a run, and pause after a failed connection.
-const PAUSE: Duration = Duration::from_millis(500);
+const PAUSE: Duration = Duration::from_millis(500); // wait for a run, and pause after a failed connection
 
-/// Request and response between the thread and the cell. The numbers of requests are those of the station, because each
-/// run begins its own again.
+/// Requests between the thread and the cell. Their numbers are the station's, because each run begins its own again.
 #[derive(Debug, Default)]
 struct Desk {
-    /// The present request, with the number of the run.
     request: Option<VisionRequest>,
-    /// Number of the present request in the cell.
     number: u32,
     response: VisionResponse,
 }
@@ -38,10 +34,6 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Starts the thread that waits for runs.
-    ///
-    /// # Errors
-    /// A sentence for messages.
     pub fn start(address: Address) -> Result<Self, String> {
         let (desk, stop) = (Arc::new(Mutex::new(Desk::default())), Arc::new(AtomicBool::new(false)));
         let (shared, ended) = (Arc::clone(&desk), Arc::clone(&stop));
@@ -53,14 +45,12 @@ impl Camera {
         Ok(Self { desk, stop })
     }
 
-    /// The request for the cell.
     pub fn request(&self) -> VisionRequest {
         let desk = locked(&self.desk);
         desk.request
             .map_or_else(VisionRequest::default, |request| VisionRequest { number: desk.number, ..request })
     }
 
-    /// Passes the answer of the cell on.
     pub fn answer(&self, response: &VisionResponse) {
         let mut desk = locked(&self.desk);
         let echo = desk.request.map_or(0, |request| request.number);
@@ -81,7 +71,6 @@ fn locked(desk: &Mutex<Desk>) -> MutexGuard<'_, Desk> {
     desk.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Attends one run after the other.
 fn serve(address: &Address, desk: &Mutex<Desk>, stop: &AtomicBool) {
     let mut refused = None;
     while !stop.load(Ordering::Relaxed) {
@@ -108,7 +97,6 @@ fn serve(address: &Address, desk: &Mutex<Desk>, stop: &AtomicBool) {
     }
 }
 
-/// Answers the requests of a run until it ends.
 fn attend(peer: &mut Peer, desk: &Mutex<Desk>, stop: &AtomicBool) -> Result<(), PeerError> {
     let mut response_box = Mailbox::initialized(VISION_RESPONSE);
     let mut read = 0;

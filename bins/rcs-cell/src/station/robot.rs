@@ -24,10 +24,6 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// Starts a robot that sends to the port of `options`.
-    ///
-    /// # Errors
-    /// A sentence for messages.
     pub fn start(options: &EgmOptions, data: &Path) -> Result<Self, String> {
         let mut emulation = Emulation::new(&EgmTarget(options.clone()), data)?;
         let joints = Arc::new(Mutex::new(HOME_JOINTS));

@@ -22,26 +22,18 @@ use crate::rcs_console::{
 
 const PAUSE: &str = "PAUSE";
 const FINISHED: &str = "finished";
-/// Phase of a job that waits for an operator.
 const WAITS: &str = "waits";
-/// Ticks over which the speed of the hand is measured.
-const SPEED_TICKS: u64 = 5;
-/// A hand that is slower is at rest, in/s.
-const AT_REST: f64 = 0.05;
+const SPEED_TICKS: u64 = 5; // ticks over which the speed of the hand is measured
+const AT_REST: f64 = 0.05; // a hand that is slower is at rest, in/s
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
     Running,
-    /// Waiting at rest for a command or a person.
-    Paused,
-    /// Unable to move, because a person or a switch stops the robot.
-    Stopped,
-    /// Without pressure after an emergency stop.
+    Paused,  // waiting at rest for a command or a person
+    Stopped, // unable to move, because a person or a switch stops the robot
     EStop,
     Fault,
-    /// The run has finished its job.
-    Finished,
-    /// The run has ended, and this console knows of no failure.
+    Finished, // the run has finished its job
     Ended,
     NoData,
 }
@@ -93,16 +85,12 @@ impl Finding {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Band {
     pub condition: Condition,
-    /// The reason, or the command in progress.
-    pub why: String,
-    /// The operator's next step; empty if none is needed.
-    pub next: String,
+    pub why: String,  // the reason, or the command in progress
+    pub next: String, // the operator's next step; empty if none is needed
     /// Line of the job, hand, knob, tick, time, speed of the hand, name, and who commands: the most important first.
     pub facts: Vec<String>,
-    /// `OPERATOR`, `VIEWER`, `ENDED` or `RECORDED`.
-    pub role: &'static str,
-    /// True for a log, whose state is not the present state of a robot.
-    pub is_recorded: bool,
+    pub role: &'static str, // `OPERATOR`, `VIEWER`, `ENDED` or `RECORDED`
+    pub is_recorded: bool,  // true for a log, whose state is not the present state of a robot
 }
 
 /// The data that determine the state.
@@ -112,19 +100,15 @@ struct Scene<'a> {
     about: &'a About<'a>,
     picture: &'a Picture,
     job: Option<JobState>,
-    /// Who commands.
     commander: Option<String>,
-    /// The simulated robot controller.
     controller: Option<Controller>,
-    /// What went wrong up to this tick, unless work has continued since.
-    failure: Option<Failure>,
+    failure: Option<Failure>, // what went wrong up to this tick, unless work has continued since
 }
 
 /// The checks in the order of their importance. The first that applies gives the state.
 const CHECKS: [fn(&Scene<'_>) -> Option<Finding>; 7] =
     [no_data, finished, emergency, failed, ended, stopped, paused];
 
-/// The band of a console. It shows the present state of the run even if the picture is frozen.
 #[must_use]
 pub fn band(model: &Model, source: &dyn Source) -> Band {
     let about = source.about();

@@ -12,12 +12,9 @@ use record::views::{Controller, JobState, Part};
 use super::{Section, Text, Tone, drawing::Drawing};
 use crate::rcs_console::{picture::Picture, source::Cell};
 
-/// A joint nearer to a limit than this is marked, degrees.
-const NEAR: f64 = 10.0;
-/// Margin per character of the bar, degrees.
-const BAR: f64 = 10.0;
-/// Length of the longest bar, characters.
-const LONGEST: f64 = 12.0;
+const NEAR: f64 = 10.0; // a joint nearer to a limit than this is marked, degrees
+const BAR: f64 = 10.0; // margin per character of the bar, degrees
+const LONGEST: f64 = 12.0; // length of the longest bar, characters
 
 #[must_use]
 pub fn sections(picture: &Picture, cell: &Cell) -> Vec<Section> {

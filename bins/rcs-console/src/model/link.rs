@@ -15,7 +15,6 @@ const MESSAGES: usize = 6;
 const RESTARTS: usize = 3;
 const SOURCES: [&str; 4] = ["T3 Interface", "cell", "fault", "executive"];
 
-/// The sections from top to bottom.
 #[must_use]
 pub fn sections(picture: &Picture, story: &Story, cell: &Cell) -> Vec<Section> {
     vec![
@@ -111,7 +110,6 @@ fn times(picture: &Picture, story: &Story, cell: &Cell) -> Section {
     Section::new("time", lines)
 }
 
-/// Lateness of the ticks on the 40 ms grid.
 fn lateness(cell: &Cell) -> Text {
     match cell {
         Cell::Shown(view) => {
@@ -148,7 +146,6 @@ fn messages(picture: &Picture, story: &Story) -> Section {
     Section::new("messages, newest first", if lines.is_empty() { none } else { lines })
 }
 
-/// A message as a line: tick, time, source, text.
 #[must_use]
 pub fn message(line: &LogLine) -> Text {
     let (mark, tone) = if line.level >= Level::Warning { ("!!", Tone::Trouble) } else { ("  ", Tone::Plain) };
@@ -160,7 +157,6 @@ fn at(tick: u64) -> f64 {
     tick as f64 * TICK_S
 }
 
-/// Meaning of the codes on the screen of the robot controller.
 fn codes() -> Section {
     let Schema::Enum(warnings) = Warning::SCHEMA else { return Section::default() };
     let lines = warnings.variants.iter().filter(|warning| !warning.text.is_empty());

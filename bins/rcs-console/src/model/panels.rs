@@ -65,10 +65,8 @@ const KEYS: [(&str, &[&str]); 7] = [
 ];
 /// Placeholder that the operator replaces by a name before the request is sent.
 pub const TO_NAME: &str = "OBJECT";
-/// Columns of a line of the key list.
-const WIDTH: usize = 79;
+const WIDTH: usize = 79; // columns of a line of the key list
 
-/// The requests of the key list, in order.
 pub fn requests() -> impl Iterator<Item = String> {
     let whole = |title: &str, words: &str| format!("{title} {words}").trim_start().to_owned();
     KEYS.iter().flat_map(move |(title, all)| all.iter().map(move |words| whole(title, words)))
@@ -80,7 +78,6 @@ pub fn request(at: usize) -> String {
     requests().nth(at).unwrap_or_default()
 }
 
-/// The sections: the panels in their present state, and the key list.
 #[must_use]
 pub fn sections(
     devices: &DeviceInputs,
@@ -195,7 +192,6 @@ fn rotary_table(sensors: &PedestalSensors, panel: TableView) -> Text {
     Text::plain(format!(" counter {counter:>7.2}, {at}; {shown}"))
 }
 
-/// Hand and table of the Active Pedestal, and its last command.
 fn pedestal(memory: &CommonMemory) -> Text {
     let status = &memory.pedestal.status;
     let part = memory.subtask.regrip.map_or_else(|| "a part".to_owned(), |regrip| regrip.object.to_string());
@@ -216,7 +212,6 @@ fn pedestal(memory: &CommonMemory) -> Text {
     Text::plain(format!(" hand {holds}, {opening:.2} in open; table {angle}; {command} {}", status.report))
 }
 
-/// All requests, with the one at the cursor in brackets.
 fn keys(operating: &Operating) -> Section {
     let mut lines = Vec::new();
     let (mut line, mut number, mut at) = (String::new(), 0, 0);

@@ -15,13 +15,11 @@ use crate::rcs_console::{
     story::Story,
 };
 
-/// Number of pictures kept: ten seconds, without missed ones.
-const KEPT: usize = 250;
+const KEPT: usize = 250; // number of pictures kept: ten seconds, without missed ones
 const STORY: usize = 4096;
 /// Number of attempts to read a consistent picture. In a fast run the next tick may begin during one.
 const ATTEMPTS: usize = 10;
-/// Time without a new tick after which a run is silent.
-const SILENCE: Duration = Duration::from_secs(1);
+const SILENCE: Duration = Duration::from_secs(1); // time without a new tick after which a run is silent
 
 pub struct Live {
     run: Attached,
@@ -33,10 +31,7 @@ pub struct Live {
 }
 
 impl Live {
-    /// Attach to a run.
-    ///
-    /// # Errors
-    /// [`SharedMemoryError`] if the run does not exist, was built from other sources, or cannot be read.
+    /// Attach to a run. Fails if the run does not exist, was built from other sources, or cannot be read.
     pub fn open(name: &RunName, on_stuck: Option<OnStuck>) -> Result<Self, SharedMemoryError> {
         let run = within_limit(SET_UP_LIMIT, on_stuck, || Attached::open(name))?;
         let mut live = Self {
@@ -51,8 +46,7 @@ impl Live {
         Ok(live)
     }
 
-    /// A picture of one tick, and true if it is the last one of the run. `None` if the next tick began during
-    /// every attempt, or before the first tick.
+    /// True for the last picture of the run. `None` if the next tick began during every attempt, or before the first.
     fn read(&self) -> Result<Option<(Picture, bool)>, ReadError> {
         for _ in 0..ATTEMPTS {
             let pulse = self.run.pulse()?;

@@ -17,7 +17,6 @@ use crate::rcs_console::{picture::Picture, story::Story};
 
 /// A source of pictures. It never writes to the data that it reads.
 pub trait Source {
-    /// Name and state of the source.
     fn about(&self) -> About<'_>;
 
     fn refresh(&mut self);
@@ -28,7 +27,6 @@ pub trait Source {
     /// The picture of the last tick up to `tick`.
     fn picture(&self, tick: u64) -> Option<Picture>;
 
-    /// The changes from tick to tick.
     fn story(&self) -> &Story;
 
     fn cell(&self, tick: u64) -> Cell;
@@ -44,38 +42,28 @@ pub trait Source {
     }
 }
 
-/// Name and state of a source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct About<'a> {
-    /// Name of the run, or of the log file.
     pub name: &'a str,
-    /// Log, or state of the run.
-    pub state: State,
-    /// Ending of the run, one line, once known.
-    pub result: Option<&'a str>,
-    /// The parts of a log that cannot be read, as text.
-    pub damage: Option<String>,
+    pub state: State,            // log, or state of the run
+    pub result: Option<&'a str>, // ending of the run, one line, once known
+    pub damage: Option<String>,  // the parts of a log that cannot be read, as text
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum State {
     Log,
     Runs,
-    /// The run has ended in an orderly way.
-    Over,
-    /// No new tick for this number of seconds.
-    Silent(u64),
-    /// The last attempts found buffers that were being written or could not be read.
-    Torn,
+    Over,        // the run has ended in an orderly way
+    Silent(u64), // no new tick for this number of seconds
+    Torn,        // the last attempts found buffers that were being written or could not be read
 }
 
 /// State of the cell in a source, in addition to the controller's sensors.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// Not published: the robot is at a port.
-    NotPublished,
-    /// The published state of a simulated cell.
-    Shown(Box<CellView>),
+    NotPublished,         // not published: the robot is at a port
+    Shown(Box<CellView>), // the published state of a simulated cell
     Recorded(Box<RecordedCell>),
 }
 
@@ -86,8 +74,7 @@ pub struct RecordedCell {
     pub commander: Option<Commander>,
     /// The simulated robot controller; `None` also with a robot at a port.
     pub controller: Option<Controller>,
-    /// Each part in the cell, with its position, in.
-    pub parts: Vec<(Part, [f64; 3])>,
+    pub parts: Vec<(Part, [f64; 3])>, // each part in the cell, with its position, in
     /// Closest clearance and contacts of the whole run; `None` before its end, or if the log has none.
     pub clearance: Option<String>,
     pub contacts: Option<String>,

@@ -17,24 +17,20 @@ use taskdata::load::Source as Blocks;
 use super::{About, Cell, RecordedCell, Source, State, deltas::Deltas};
 use crate::rcs_console::{error::ConsoleError, picture::Picture, story::Story};
 
-/// Metres to inches.
-const INCHES: f64 = 1.0 / 0.0254;
+const INCHES: f64 = 1.0 / 0.0254; // metres to inches
 /// The screens have only the tables of this program.
 const OTHER_TABLES: &str =
     "the log has other decision tables than this program, which it shows: use `rcs-log why LOG`";
-/// Prefix of the names of links that are parts.
-const PART: &str = "part_";
+const PART: &str = "part_"; // prefix of the names of links that are parts
 
-/// Positions of a link, each with its first tick, in.
-type Places = Vec<(u64, [f64; 3])>;
+type Places = Vec<(u64, [f64; 3])>; // positions of a link, each with its first tick, in
 
 pub struct Recorded {
     path: PathBuf,
     name: String,
     deltas: Deltas,
     story: Story,
-    /// Positions of the links of parts, by their names.
-    places: BTreeMap<String, Places>,
+    places: BTreeMap<String, Places>, // positions of the links of parts, by their names
     parts: Changes<Parts>,
     job: Changes<JobState>,
     commander: Changes<Commander>,
@@ -48,11 +44,7 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// Read a whole log.
-    ///
-    /// # Errors
-    /// [`ConsoleError::Log`] if the file is not a log or was written by another program; [`ConsoleError::Empty`] if it
-    /// has no tick. Damaged parts are skipped, and described in [`About::damage`].
+    /// Damaged parts are skipped, and described in [`About::damage`]. Errors: not a log of this program, or no tick.
     pub fn open(path: &Path) -> Result<Self, ConsoleError> {
         let failed = |source: ReadError| ConsoleError::Log { path: path.to_owned(), source };
         let log = Log::open(path).map_err(failed)?;
@@ -127,7 +119,6 @@ fn blocks(log: &Log) -> Vec<Blocks> {
     first.chain(later).collect()
 }
 
-/// Positions of the parts, tick by tick.
 fn places(log: &Log) -> BTreeMap<String, Places> {
     let mut parts: BTreeMap<String, Places> = BTreeMap::new();
     for (tick, moved) in log.places() {

@@ -1,5 +1,4 @@
-//! Events of the cell, found by comparing two of its published views. Logs contain events as lines; shared
-//! memory contains only states.
+//! Compares two published views of the cell: logs contain events as lines, shared memory only states.
 
 use executive::memory::cell::{CellView, PartView};
 use plant::{CellEvent, Cut, EStop, t3::RobotEvent};
@@ -7,9 +6,7 @@ use rcs_core::tick::Tick;
 use record::{Level, reader::LogLine};
 use runtime::event::Event;
 
-/// Location of a part that lies on the floor.
 const FLOOR: &str = "floor";
-/// Code of a warning of the robot controller, as in a log.
 const WARNING: &str = "cell.warning";
 
 /// The events between two views, as the lines of a log: with the tick after that of the event. Before the first view
@@ -36,7 +33,6 @@ pub fn lines(before: Option<&CellView>, now: &CellView) -> Vec<LogLine> {
     lines
 }
 
-/// The loss of pressure that this text reports.
 fn cut(text: &str) -> Option<Cut> {
     let others = [Cut::PressureLost, Cut::ManualOff, Cut::KeySwitch, Cut::ControlPower, Cut::PrimBox];
     EStop::ALL.iter().copied().map(Cut::EStop).chain(others).find(|cut| cut.to_string() == text)
@@ -59,7 +55,6 @@ mod tests {
     use executive::memory::Text;
     use rcs_core::name::Name16;
 
-    /// A view after a tick, with a text of the screen and the cause of a loss of pressure.
     fn view(tick: u64, (screen, screen_tick): (&str, u64), cut: Option<(Cut, u64)>) -> CellView {
         let mut view = CellView { tick: Tick(tick), ..CellView::default() };
         view.controller.screen = Text::clipped(screen);

@@ -36,7 +36,6 @@ fn asciicast(written: &Written) -> String {
     text
 }
 
-/// Mark and number of the step at the cursor.
 fn step_under_cursor(screen: &str) -> Option<(String, String)> {
     let line = screen.lines().skip(3).find(|line| line.starts_with("> "))?;
     let part =

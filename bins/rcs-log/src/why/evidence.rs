@@ -25,27 +25,21 @@ use taskdata::files::{SensorPara, SensorSource};
 
 use crate::story::{Moment, moments};
 
-/// Greatest number of changes listed for a switch. More changes are only counted.
-const CHANGES: usize = 8;
+const CHANGES: usize = 8; // greatest number of changes listed for a switch; more changes are only counted
 
-/// The findings between two ticks.
 #[derive(Default)]
 pub struct Evidence {
-    /// Text about the sensor of a guarded move.
     pub guard: Option<String>,
-    /// Texts about the devices of the process.
     pub devices: Vec<String>,
 }
 
 struct Trace {
     leaf: Leaf,
-    /// Ticks of the changes, each with the new value.
-    changes: Vec<(u64, String)>,
+    changes: Vec<(u64, String)>, // ticks of the changes, each with the new value
     least: u64,
     most: u64,
 }
 
-/// Examines the inputs of a process in the ticks from `from` to `until`.
 pub fn gather(log: &Log, process: ProcessId, from: u64, until: u64) -> Evidence {
     let wanted = |leaf: &Leaf| process.reads().iter().any(|prefix| leaf.path.starts_with(prefix));
     let mut traces: Vec<Trace> = layout::leaves(ExternalInputs::STRUCT)
@@ -145,15 +139,12 @@ impl Trace {
     }
 }
 
-/// Follows the sensor of a guarded move.
 struct Guard {
     sensors: Vec<SensorPara>,
     state: Option<Box<LadderState>>,
     sensor: Option<SensorPara>,
-    /// Number of the command that names the sensor.
-    number: u32,
-    /// The reading nearest to the threshold.
-    nearest: Option<f64>,
+    number: u32,          // number of the command that names the sensor
+    nearest: Option<f64>, // the reading nearest to the threshold
     met: bool,
     is_prim: bool,
 }

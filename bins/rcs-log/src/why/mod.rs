@@ -36,15 +36,12 @@ use crate::{
     story::{CommandHistory, Moment, open, walk},
 };
 
-/// Number of log lines shown before a tick.
-const LINES_BEFORE: usize = 12;
-/// Number of lines about cell and link shown with a failure.
-const LINES_MEANWHILE: usize = 8;
+const LINES_BEFORE: usize = 12; // number of log lines shown before a tick
+const LINES_MEANWHILE: usize = 8; // number of lines about cell and link shown with a failure
 
 /// Source of lines about events in the cell. Such a line has the tick after the event.
 const CELL: &str = "cell";
-/// Source of lines about injected faults.
-const FAULT: &str = "fault";
+const FAULT: &str = "fault"; // source of lines about injected faults
 
 /// Arguments of `why`.
 #[derive(Clone, Debug, clap::Args)]
@@ -58,7 +55,6 @@ pub struct Arguments {
     answer: Answer,
 }
 
-/// An explanation of a tick or a failure.
 #[derive(Debug, Serialize)]
 pub struct Explanation {
     tick: u64,
@@ -66,29 +62,21 @@ pub struct Explanation {
     /// What a reader must know if the log does not have the decision tables of this program.
     #[serde(skip_serializing_if = "Option::is_none")]
     tables: Option<&'static str>,
-    /// The first failure in the world; `None` if a tick was requested.
-    world: Option<World>,
-    /// The failure that began in this tick; `None` if a tick was requested.
-    failure: Option<Story>,
-    /// The action of a person before the job can continue, if it is known.
-    remedy: Option<String>,
-    /// Injected faults up to the tick, oldest first.
-    faults: Vec<LineBefore>,
-    /// The ending of the run, if it was not the failure of a process.
-    ended: Option<String>,
+    world: Option<World>, // the first failure in the world; `None` if a tick was requested
+    failure: Option<Story>, // the failure that began in this tick; `None` if a tick was requested
+    remedy: Option<String>, // the action of a person before the job can continue, if it is known
+    faults: Vec<LineBefore>, // injected faults up to the tick, oldest first
+    ended: Option<String>, // the ending of the run, if it was not the failure of a process
     /// Log lines before the tick, oldest first; for a failure, the events of cell and link during the command.
     before: Vec<LineBefore>,
     levels: Vec<Rung>,
 }
 
-/// A failure that a process reports.
 #[derive(Debug, Serialize)]
 pub struct Story {
     #[serde(flatten)]
     report: Report,
-    /// Process and tick of the first cause, in a sentence.
     first_cause: String,
-    /// Inputs of the devices during the command.
     evidence: Vec<String>,
     /// Tick of the first command that led to the failure: events in the cell can be related to it from then on.
     #[serde(skip)]
@@ -112,10 +100,7 @@ pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The explanation of a tick, or of the failure if no tick is requested.
-///
-/// # Errors
-/// [`Error::Read`] if the log cannot be read, [`Error::NoTick`] if it does not have the tick.
+/// Explains a tick, or the failure if none is requested. Fails if the log does not have the tick.
 pub fn explanation(log: &Log, path: &Path, requested: Option<u64>) -> Result<Explanation, Error> {
     let (processes, origin) = tables::of_log(log);
     let (command_history, history) = read(log, path, processes)?;
@@ -160,10 +145,7 @@ fn read(log: &Log, path: &Path, processes: Processes) -> Result<(CommandHistory,
     Ok((command_history, history))
 }
 
-/// The last command that led to the first failure in a log, with its tick, if there is a failure.
-///
-/// # Errors
-/// [`Error::Read`] if the log cannot be read.
+/// The command that led to the first failure, if any, with its tick. Fails if the log cannot be read.
 pub fn last_command(log: &Log, path: &Path) -> Result<Option<Link>, Error> {
     let (command_history, history) = read(log, path, tables::of_log(log).0)?;
     if let Some(failed) = command_history.failed(log) {
@@ -173,8 +155,7 @@ pub fn last_command(log: &Log, path: &Path) -> Result<Option<Link>, Error> {
     Ok(report.and_then(|(_, mut report)| report.commands.pop()))
 }
 
-/// Explains a failure that a process began to report in a tick, from its commands to its first cause. `account`
-/// has the earlier failures; `attached` is its report in the log.
+/// Explains a failure from its commands to its first cause. `account` has the earlier failures, `attached` its report.
 fn tell(
     log: &Log,
     history: &History,
@@ -214,7 +195,6 @@ fn first_cause(history: &History, root: Root, since: u64, found: &evidence::Evid
     }
 }
 
-/// The requested tick, or the last one.
 fn find(log: &Log, path: &Path, tick: Option<u64>) -> Result<Moment, Error> {
     let (mut first, mut last, mut found) = (None, Tick::BEFORE_START, None);
     walk(log, path, |moment| {
@@ -333,13 +313,11 @@ fn lines(lines: &[LineBefore], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     })
 }
 
-/// Links under a title; empty without links.
 fn links(title: &str, links: &[Link], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let line = |Link { tick, process, text }: &Link| format!("tick {tick:>6}  {process} {text}");
     list(title, &links.iter().map(line).collect::<Vec<_>>(), f)
 }
 
-/// Lines under a title; empty without lines.
 fn list(title: &str, lines: &[String], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     if lines.is_empty() {
         return Ok(());

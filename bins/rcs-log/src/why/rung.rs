@@ -12,32 +12,24 @@ use serde::Serialize;
 
 use crate::story::Moment;
 
-/// Action of a process in a tick.
 #[derive(Debug, Serialize)]
 pub struct Rung {
     process: String,
     command: String,
-    /// The process was not executed, because it was dormant or held.
-    held: bool,
-    /// Tick in which the row fired, if the process has not decided since.
-    old: Option<u64>,
-    /// Values of the state variables of the table when the row fired.
-    values: Option<String>,
+    held: bool,             // the process was not executed, because it was dormant or held
+    old: Option<u64>,       // tick in which the row fired, if the process has not decided since
+    values: Option<String>, // values of the state variables of the table when the row fired
     /// Rows of other tables that fired in the same execution of the process, with their values.
     beside: Vec<String>,
     table: Option<String>,
     row: Option<u8>,
     /// Conditions of the row: its step and state variables, with the values for which it fired.
     conditions: Vec<String>,
-    /// Action of the row, with its parameters.
-    action: Option<String>,
-    /// Next step, if the row changes it.
-    next: Option<String>,
-    /// Step of the command after the row; empty for none.
-    step: String,
-    /// Action and next step as text.
+    action: Option<String>, // action of the row, with its parameters
+    next: Option<String>,   // next step, if the row changes it
+    step: String,           // step of the command after the row; empty for none
     #[serde(skip)]
-    effect: String,
+    effect: String, // action and next step as text
 }
 
 /// All processes in a tick, from Task down.

@@ -13,16 +13,12 @@ use serde::Serialize;
 use super::data;
 use crate::story::moments;
 
-/// The first failure in the world and its consequences.
 #[derive(Debug, Serialize)]
 pub struct World {
-    /// The failures in order.
     #[serde(flatten)]
     pub account: Account,
-    /// The commands that led to the event, from the workstation controller down.
-    pub commands: Vec<Link>,
-    /// The data that the last row used, with file, block and line.
-    pub data: Vec<String>,
+    pub commands: Vec<Link>, // the commands that led to the event, from the workstation controller down
+    pub data: Vec<String>,   // the data that the last row used, with file, block and line
 }
 
 /// The last command to Prim, and the path of E-move when it gave that command.

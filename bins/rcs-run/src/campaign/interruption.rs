@@ -18,57 +18,35 @@ use super::{
 };
 use crate::rcs_run::error::Error;
 
-/// Duration of a Hold, ticks: 3 s.
-const HOLD: u64 = 75;
-/// Ticks for which the box holds a process: 2 s.
-const HELD: u64 = 50;
+const HOLD: u64 = 75; // duration of a Hold, ticks: 3 s
+const HELD: u64 = 50; // ticks for which the box holds a process: 2 s
 /// Ticks between the last entry of the journal and the loss of power: the time of a write.
 const LATE_ENTRY: u64 = 1;
-/// Ticks without power: 2 s.
-const OUTAGE: u64 = 50;
-/// Ticks between power and the first action of the operator.
-const RESTART: u64 = 25;
-/// Ticks between the emergency stop and its release: the time to walk there.
-const STOPPED: u64 = 100;
+const OUTAGE: u64 = 50; // ticks without power: 2 s
+const RESTART: u64 = 25; // ticks between power and the first action of the operator
+const STOPPED: u64 = 100; // ticks between the emergency stop and its release: the time to walk there
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
-    /// No interruption: the branch continues as its parent.
     None,
     Pause,
-    /// PAUSE, and a second PAUSE during the recovery.
     PauseTwice,
-    /// A command with a misspelt location.
-    Refused,
-    /// Another valid command, then the interrupted command again.
-    Replaced,
-    /// One answer of the robot controller is lost.
-    AnswerLost,
-    /// One answer of the robot controller is late.
-    AnswerLate,
-    /// One answer of the robot controller is damaged.
-    AnswerDamaged,
-    /// Hold of the robot controller for 3 s.
+    Refused,       // a command with a misspelt location
+    Replaced,      // another valid command, then the interrupted command again
+    AnswerLost,    // one answer of the robot controller is lost
+    AnswerLate,    // one answer of the robot controller is late
+    AnswerDamaged, // one answer of the robot controller is damaged
     Hold,
-    /// The joystick moves the robot by 0.2 in and back.
-    Nudge,
-    /// The joystick moves the robot 3 in away and back.
-    Away,
-    /// A switch on the joystick box holds a process, and then releases it.
-    Held(ProcessId),
+    Nudge,           // the joystick moves the robot by 0.2 in and back
+    Away,            // the joystick moves the robot 3 in away and back
+    Held(ProcessId), // a switch on the joystick box holds a process, and then releases it
     Restart(ProcessId),
-    /// A process writes nothing from now on.
-    Lost(ProcessId),
-    /// The controller loses its power, and everything but its journal.
-    Power,
-    /// The cable to the robot controller is cut.
-    Cut,
-    /// Emergency stop, and the start-up at the panel.
-    Estop,
-    /// The faults of a file for [`FAULT`] ticks, with the name of the file.
-    Fault(String, Arc<FaultFile>),
-    /// A person moves the robot aside, or changes the parts in the cell.
-    Disturbed(Disturbance),
+    Lost(ProcessId),               // a process writes nothing from now on
+    Power,                         // the controller loses its power, and everything but its journal
+    Cut,                           // the cable to the robot controller is cut
+    Estop,                         // emergency stop, and the start-up at the panel
+    Fault(String, Arc<FaultFile>), // the faults of a file for [`FAULT`] ticks, with the name of the file
+    Disturbed(Disturbance),        // a person moves the robot aside, or changes the parts in the cell
 }
 
 /// Kinds without a parameter, with their names.
@@ -88,8 +66,7 @@ const PLAIN: [(&str, Kind); 14] = [
     ("power", Kind::Power),
     ("cut", Kind::Cut),
 ];
-/// Interruptions of a process, `WORD:PROCESS`.
-const OF_PROCESS: [&str; 3] = ["held", "restart", "lost"];
+const OF_PROCESS: [&str; 3] = ["held", "restart", "lost"]; // interruptions of a process, `WORD:PROCESS`
 
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -111,10 +88,7 @@ fn word_of(process: ProcessId) -> &'static str {
 
 impl Kind {
     /// The kinds that a word of the command line selects: `restart` selects one per process, `fault` one per file that
-    /// can be switched on.
-    ///
-    /// # Errors
-    /// [`Error::Campaign`] for an unknown word; it lists all words.
+    /// can be switched on. Errors: [`Error::Campaign`] for an unknown word; it lists all words.
     pub fn named(text: &str, data: &Path, cell: &CellDescription) -> Result<Vec<Self>, Error> {
         let process = |name: &str| ProcessId::ALL.iter().copied().find(|process| word_of(*process) == name);
         let found = match text.split_once(':') {

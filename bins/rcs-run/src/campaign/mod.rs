@@ -64,13 +64,9 @@ use self::{
 };
 use crate::rcs_run::error::Error;
 
-/// Default number of ticks between two forks.
-const EVERY: u64 = 23;
+const EVERY: u64 = 23; // default number of ticks between two forks
 
-/// Run a campaign and print the results.
-///
-/// # Errors
-/// [`Error`] if data or arguments cannot be used, or if the undisturbed job does not finish.
+/// Prints the results. Fails if data or arguments cannot be used, or if the undisturbed job does not finish.
 pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
     let mut columns = Vec::new();
     for job in &arguments.jobs {

@@ -1,5 +1,4 @@
-//! The steps of an interruption, carried out tick by tick by a person at the joystick box, at the panel or in
-//! the cell, or by a fault.
+//! The steps of an interruption, tick by tick: by a person at the box, at the panel or in the cell, or by a fault.
 
 use std::sync::Arc;
 
@@ -29,12 +28,10 @@ const BUTTON_TICKS: u64 = 100;
 const KEY_TICKS: u64 = 2000;
 /// Ticks from CYCLE START to the DEPC function: the program makes two short motions.
 const REHEARSAL: u64 = 75;
-/// Ticks for which a fault is on.
-pub const FAULT: u64 = 20;
+pub const FAULT: u64 = 20; // ticks for which a fault is on
 /// Least probability of a random fault, millionths per tick or byte, so that it occurs within [`FAULT`] ticks.
 const CHANCE: u32 = 50_000;
 
-/// An action on a control of the joystick box.
 pub const fn at_box(action: BoxAction) -> ScriptStep {
     ScriptStep::Workstation(WorkstationAction::Joystick(action))
 }
@@ -75,26 +72,18 @@ pub enum ScriptStep {
     Restart(ProcessId),
     Lose(ProcessId),
     Cut,
-    /// The journal writes its last entry.
-    Journal,
+    Journal, // the journal writes its last entry
     PowerOff,
     PowerOn,
     Answer(FaultKind),
     Faults(Arc<FaultFile>),
-    /// ENTER, if the robot controller shows a warning.
-    Enter,
-    /// The start-up at the panel, if the robot controller has lost its pressure.
-    StartUp,
-    /// A key of the panel, as soon as the controller accepts it.
-    Key(Key),
-    /// Button D of the joystick box, until the robot is [`RISE`] higher or stops rising.
-    Rise,
-    /// Button E, until the robot is almost back at the height at which it rose.
-    Sink,
-    /// Stick and buttons, which move the robot along a path.
-    Lead(Lead),
-    /// A change of the parts in the cell.
-    Change(What),
+    Enter,        // ENTER, if the robot controller shows a warning
+    StartUp,      // the start-up at the panel, if the robot controller has lost its pressure
+    Key(Key),     // a key of the panel, as soon as the controller accepts it
+    Rise,         // button D of the joystick box, until the robot is [`RISE`] higher or stops rising
+    Sink,         // button E, until the robot is almost back at the height at which it rose
+    Lead(Lead),   // stick and buttons, which move the robot along a path
+    Change(What), // a change of the parts in the cell
     Undo(Undo),
 }
 
@@ -108,18 +97,14 @@ impl ScriptStep {
 const START_UP: [Key; 6] =
     [Key::FaultReset, Key::Hydraulics(true), Key::Manual(true), Key::Align(None), Key::Auto, Key::CycleStart];
 
-/// The steps of an interruption, tick by tick.
 pub struct Script {
     steps: Vec<ScriptStep>,
     at: usize,
     until: Option<Tick>,
-    /// Height of the tool before it was moved away, in.
-    height: f64,
+    height: f64, // height of the tool before it was moved away, in
     lead: Option<Lead>,
-    /// Steps that undo the changes of the cell.
-    undo: Vec<Undo>,
-    /// The bytes of the journal.
-    journal: Vec<u8>,
+    undo: Vec<Undo>,  // steps that undo the changes of the cell
+    journal: Vec<u8>, // the bytes of the journal
 }
 
 /// Move the robot over a way, 0.01 in, world, and return control of it.
@@ -134,8 +119,7 @@ impl Script {
         Self { steps, at: 0, until: None, height: 0.0, lead: None, undo: Vec::new(), journal: Vec::new() }
     }
 
-    /// The script that undoes a person's changes in this one: the remedy for a command refused because of them.
-    /// `None` if there are no changes.
+    /// Undoes a person's changes, because of which a command was refused. `None` without changes.
     #[must_use]
     pub fn undone(&self, what: &What) -> Option<Self> {
         if let What::Jog(way) = what {
@@ -276,7 +260,6 @@ fn cell_faults(plan: &FaultPlan, from: u64) -> FaultPlan {
     plan
 }
 
-/// The faults of the line in a window.
 fn line_faults(plan: &Plan, from: u64) -> Plan {
     let mut windowed = Plan::new(plan.seed());
     for rule in plan.rules() {

@@ -11,13 +11,9 @@ use crate::rcs_run::{
     error::{Error, FAILED},
 };
 
-/// Number of readings of a state: one second.
-const READINGS: u32 = 50;
+const READINGS: u32 = 50; // number of readings of a state: one second
 
-/// Read a point in two states and print `raw` and `counts`. Exit status 0 if the states differ, 1 if not.
-///
-/// # Errors
-/// [`Error`] if the mapping cannot be used, or has no such point at a device.
+/// Exit status 0 if the states differ, 1 if not. Fails if the mapping cannot be used, or has no such point.
 pub fn calibrate(arguments: &IoCalibrateArguments) -> Result<ExitCode, Error> {
     let bench = Bench::open(&arguments.mapping)?;
     let name = &arguments.point;

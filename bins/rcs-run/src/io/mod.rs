@@ -30,12 +30,10 @@ use runtime::StartError;
 
 use crate::rcs_run::{arguments::MappingArgument, error::Error};
 
-/// Time between two exchanges.
-const PERIOD: Duration = Duration::from_millis(20);
+const PERIOD: Duration = Duration::from_millis(20); // time between two exchanges
 /// Longest time for the set-up of a device, beyond its watchdog: one of an earlier run must fire first.
 const SET_UP: Duration = Duration::from_secs(3);
-/// Number of exchanges after which the end of a session is confirmed, or not.
-const ENDING: usize = 15;
+const ENDING: usize = 15; // number of exchanges after which the end of a session is confirmed, or not
 
 /// A mapping whose devices belong to this process until it is dropped.
 pub struct Bench {
@@ -44,10 +42,7 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Read a mapping, and take its devices.
-    ///
-    /// # Errors
-    /// [`Error::Start`] if the mapping cannot be used, or another process has a device.
+    /// Takes the devices. Fails if the mapping cannot be used, or another process has a device.
     pub fn open(argument: &MappingArgument) -> Result<Self, Error> {
         let path = FIELDS.find(&argument.mapping, &argument.data).map_err(StartError::from)?;
         let mapping = runtime::field::read(&path)?;
@@ -60,9 +55,6 @@ impl Bench {
     }
 
     /// A session with a device that is set up; with [`Mode::Watch`] it has written no output.
-    ///
-    /// # Errors
-    /// The hindrance.
     pub fn probe(&self, index: usize, mode: Mode) -> Result<Probe, Hindrance> {
         let device = &self.mapping.devices[index];
         let text = |error: DeviceError| Hindrance::new(format!("{}: {error}", device.name));
@@ -87,7 +79,6 @@ impl Bench {
     }
 }
 
-/// Why a device cannot be set up.
 #[derive(Debug)]
 pub struct Hindrance {
     /// A sentence with the device.
@@ -102,7 +93,6 @@ impl Hindrance {
     }
 }
 
-/// A session with a device, in this thread.
 pub struct Probe {
     link: TcpLink,
     session: Session,
@@ -125,7 +115,6 @@ impl Probe {
         begun.elapsed()
     }
 
-    /// Carry out exchanges for some time.
     pub fn exchange_for(&mut self, time: Duration) {
         let begun = Instant::now();
         while begun.elapsed() < time {

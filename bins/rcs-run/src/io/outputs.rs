@@ -14,13 +14,11 @@ use super::{
     tally::{OutputTally, Verdict},
 };
 
-/// Time for which an output is on.
-const ON_FOR: Duration = Duration::from_secs(1);
+const ON_FOR: Duration = Duration::from_secs(1); // time for which an output is on
 const OFF_FOR: Duration = Duration::from_millis(100);
 /// Parts of names of outputs that open, release or start something.
 const RISKY: [&str; 6] = ["open", "unlock", "release", "vent", "start", "order"];
 
-/// Test the outputs of a device.
 pub fn test(bench: &Bench, index: usize, stop: &AtomicBool) -> io::Result<Vec<OutputTally>> {
     let mut tallies = Vec::new();
     for point in bench.mapping.outputs.iter().filter(|point| point.device() == index) {

@@ -15,10 +15,7 @@ use crate::rcs_run::{
 const WRITTEN_FOR: Duration = Duration::from_millis(200);
 
 /// Make the outputs of all devices safe, after a question for each device that has outputs on. Exit status 0 if all
-/// have confirmed it, 1 if not.
-///
-/// # Errors
-/// [`Error`] if the mapping cannot be used, or another process has a device.
+/// have confirmed it, 1 if not. Fails if the mapping cannot be used, or another process has a device.
 pub fn release(arguments: &IoReleaseArguments) -> Result<ExitCode, Error> {
     let bench = Bench::open(&arguments.mapping)?;
     let mut is_done = true;

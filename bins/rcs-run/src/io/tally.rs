@@ -8,20 +8,13 @@ use serde::Serialize;
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     Good,
-    /// A device with at most one failed exchange in a hundred.
-    Usable,
-    /// An analog input did not change by a bit: the sensor may be absent.
-    Steady,
-    /// A converter at an end of its range: a broken wire, or a wrong `raw`.
-    BrokenWire,
-    /// A device with more failed exchanges.
-    NotUsable,
-    /// A device that could not be set up.
-    NotReady,
-    /// An output that was not read back as written, or that the person did not see.
-    NoEffect,
-    /// An output or a watchdog that was not tested.
-    Skipped,
+    Usable,     // a device with at most one failed exchange in a hundred
+    Steady,     // an analog input did not change by a bit: the sensor may be absent
+    BrokenWire, // a converter at an end of its range: a broken wire, or a wrong `raw`
+    NotUsable,  // a device with more failed exchanges
+    NotReady,   // a device that could not be set up
+    NoEffect,   // an output that was not read back as written, or that the person did not see
+    Skipped,    // an output or a watchdog that was not tested
 }
 
 impl Verdict {
@@ -43,32 +36,26 @@ impl Verdict {
     }
 }
 
-/// Result for a device.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceTally {
     pub name: String,
     pub address: String,
-    /// Text of the coupler about itself; empty without one.
-    pub identity: String,
+    pub identity: String, // text of the coupler about itself; empty without one
     pub verdict: Verdict,
-    /// Why it is not ready; empty if it is.
-    pub hindrance: String,
+    pub hindrance: String, // why it is not ready; empty if it is
     pub exchanges: u32,
     pub failures: u32,
-    /// Durations of exchanges, ms: median, 99th percentile, greatest.
-    pub exchange_ms: [f64; 3],
+    pub exchange_ms: [f64; 3], // durations of exchanges, ms: median, 99th percentile, greatest
     /// Time from the last write to the fallback, ms; `None` if it was not tested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fallback_ms: Option<u64>,
 }
 
-/// Result for an input.
 #[derive(Clone, Debug, Serialize)]
 pub struct InputTally {
     pub name: String,
     pub device: String,
-    /// Least and greatest raw value.
-    pub raw: [i64; 2],
+    pub raw: [i64; 2], // least and greatest raw value
     /// Least and greatest value in the controller; `None` for a point of the workstation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub counts: Option<[i64; 2]>,
@@ -76,7 +63,6 @@ pub struct InputTally {
     pub verdict: Verdict,
 }
 
-/// Result for an output.
 #[derive(Clone, Debug, Serialize)]
 pub struct OutputTally {
     pub name: String,

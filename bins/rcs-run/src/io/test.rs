@@ -30,15 +30,11 @@ use crate::rcs_run::{
     interrupt::interruption,
 };
 
-/// A device of which more than one exchange in so many fails is not usable.
-const MOST_FAILED_OF: u64 = 100;
-/// Registers of the identity of a BK9000.
-const IDENTITY: usize = 7;
+const MOST_FAILED_OF: u64 = 100; // a device of which more than one exchange in so many fails is not usable
+const IDENTITY: usize = 7; // registers of the identity of a BK9000
 
-/// Test the couplers and print the verdicts. Exit status 0 if all are good, 1 if not, 3 after an interruption.
-///
-/// # Errors
-/// [`Error`] if the mapping cannot be used, or another process has a device.
+/// Test the couplers and print the verdicts. Exit status 0 if all are good, 1 if not, 3 after an interruption. Fails
+/// if the mapping cannot be used, or another process has a device.
 pub fn test(arguments: &IoTestArguments) -> Result<ExitCode, Error> {
     let bench = Bench::open(&arguments.mapping)?;
     let stop = interruption()?;
@@ -88,7 +84,6 @@ struct Tested {
     times: Vec<Duration>,
 }
 
-/// Set all devices up, and exchange with all of them for some time.
 fn inputs(bench: &Bench, exchanges: u32, tally: &mut Tally, stop: &AtomicBool) {
     let mapping = &bench.mapping;
     let mut tested: Vec<Option<Tested>> = Vec::new();
@@ -150,7 +145,6 @@ fn inputs(bench: &Bench, exchanges: u32, tally: &mut Tally, stop: &AtomicBool) {
     tally.inputs = seen.into_iter().flatten().map(judged).collect();
 }
 
-/// Note the inputs of all devices after an exchange.
 fn note(bench: &Bench, tested: &[Option<Tested>], tally: &Tally, seen: &mut Vec<Option<InputTally>>) {
     let mapping = &bench.mapping;
     let fresh = |device: &Option<Tested>| Seen {

@@ -16,7 +16,6 @@ pub type Processes = &'static [ProcessInfo; PROCESS_COUNT];
 /// Entries that are kept of each kind, so that the history of a run without an end does not grow.
 const KEPT: usize = 4096;
 
-/// A command, valid from the tick of its writing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Commanded {
     pub tick: u64, // Task reads it in the same tick, other receivers one tick later
@@ -27,25 +26,18 @@ pub struct Commanded {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fired {
     pub tick: u64,
-    /// Table and row; `None` if no row of a table fired.
-    pub decided: Option<Decided>,
-    /// The values for which it first fired.
-    pub values: Option<Values>,
-    /// Step of the command after the row.
-    pub step: Option<Name16>,
+    pub decided: Option<Decided>, // table and row; `None` if no row of a table fired
+    pub values: Option<Values>,   // the values for which it first fired
+    pub step: Option<Name16>,     // step of the command after the row
 }
 
-/// A report, valid from the tick of its writing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reported {
     pub tick: u64,
-    /// The report as text: `executing`, `done`, `not-detected` ...
-    pub report: &'static str,
-    /// The reason of a failed command; empty otherwise.
-    pub reason: &'static str,
+    pub report: &'static str, // the report as text: `executing`, `done`, `not-detected` ..
+    pub reason: &'static str, // the reason of a failed command; empty otherwise
 }
 
-/// The history of all processes in a run.
 pub struct History {
     processes: Processes,
     /// Id of the end effector of Prim's commands, with the tick from which it is valid.
@@ -119,7 +111,6 @@ impl History {
         latest(&self.grippers, tick.saturating_sub(1), |(from, _)| *from)?.1
     }
 
-    /// Name and tables of a process.
     #[must_use]
     pub fn info(&self, process: ProcessId) -> &'static ProcessInfo {
         &self.processes[process.position()]

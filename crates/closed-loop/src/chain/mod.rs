@@ -20,8 +20,7 @@ use crate::{
 };
 use history::condition;
 
-/// End effector id of the gripper whose hand is the process Grip.
-const PARTS_GRIPPER: u8 = 1;
+const PARTS_GRIPPER: u8 = 1; // end effector id of the gripper whose hand is the process Grip
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Link {
@@ -30,39 +29,30 @@ pub struct Link {
     pub text: String,
 }
 
-/// The end of the trace: process and tick of the first cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Root {
     pub process: ProcessId,
     pub tick: u64,
 }
 
-/// What led to the failures of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Chain {
-    /// The commands that led to the first failure, from the workstation controller down; empty if no command can have
-    /// caused it.
+    /// Commands that led to the first failure, from the workstation controller down; empty if none can have caused it.
     pub commands: Vec<Link>,
-    /// The first failure that a process reports, if any.
-    pub report: Option<Report>,
+    pub report: Option<Report>, // the first failure that a process reports, if any
 }
 
-/// A failure that a process reports, with its causes and consequences.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Report {
-    /// Tick in which the process began to report it.
     pub tick: u64,
     pub text: String,
     /// The commands that led to the process of the first cause, from the workstation controller down.
     pub commands: Vec<Link>,
-    /// The causes, from the report to the first cause.
-    pub causes: Vec<Link>,
-    /// The reports of the failure up to Task.
-    pub consequences: Vec<Link>,
+    pub causes: Vec<Link>,       // the causes, from the report to the first cause
+    pub consequences: Vec<Link>, // the reports of the failure up to Task
 }
 
 impl Chain {
-    /// The chain of an account.
     #[must_use]
     pub fn of(account: &Account, history: &History) -> Self {
         let Failure { tick, kind, .. } = account.first;
@@ -108,8 +98,7 @@ impl Kind {
     }
 }
 
-/// Traces a report down to a process with no report from below. The links are in the order of the trace: the last one
-/// is the first cause.
+/// Traces a report down to the first process without a report from below; the last link is the first cause.
 fn down(history: &History, process: ProcessId, tick: u64) -> (Root, Vec<Link>) {
     let (mut root, mut links) = (Root { process, tick }, Vec::new());
     // The ladder has four levels above the link, so a longer trace would be a cycle.
@@ -234,7 +223,6 @@ mod tests {
     use levels::ladder::Ladder;
     use rcs_core::tick::Tick;
 
-    /// The history of ticks, each changed by a closure.
     fn history(changes: &[fn(&mut ExternalInputs, &mut CommonMemory)]) -> History {
         let (mut history, mut external, mut memory) =
             (History::new(Ladder::processes()), ExternalInputs::default(), CommonMemory::default());
@@ -318,7 +306,6 @@ mod tests {
         assert_eq!(Chain::of(&stop, &missed()), Chain::default(), "no command presses a button");
     }
 
-    /// A row of one of Subtask's tables.
     fn subtask(table: &str, row: u8) -> Decided {
         let tables = levels::subtask::tables::TABLES;
         let at = tables.iter().position(|known| known.name == table).unwrap();

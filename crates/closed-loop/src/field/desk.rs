@@ -14,29 +14,23 @@ use crate::devices::StationLines;
 struct Coupler {
     orders: Orders,
     report: Report,
-    /// State of its session after the last tick.
-    state: State,
+    state: State, // state of its session after the last tick
     refused: u32,
-    /// Time since which its inputs are old, ns.
-    read_at: u64,
+    read_at: u64, // time since which its inputs are old, ns
 }
 
-/// The couplers of a mapping.
 #[derive(Clone, Debug)]
 pub struct Desk {
     mapping: Arc<Mapping>,
     couplers: Vec<Coupler>,
-    /// Images and inputs of the devices, kept so that a tick does not allocate.
-    images: Vec<OutWords>,
+    images: Vec<OutWords>, // images and inputs of the devices, kept so that a tick does not allocate
     seen: Vec<Seen>,
     now: u64,
     events: Vec<FieldEvent>,
-    /// Lines of the job that devices of the workstation execute.
-    lines: StationLines,
+    lines: StationLines, // lines of the job that devices of the workstation execute
 }
 
-/// Name of the person who is asked, in events.
-const OPERATOR: &str = "operator";
+const OPERATOR: &str = "operator"; // name of the person who is asked, in events
 
 impl Desk {
     /// Couplers that are being set up: nothing is written yet.
@@ -145,7 +139,6 @@ impl Desk {
         coupler.map(|coupler| change(&mut coupler.orders)).is_some()
     }
 
-    /// The lines of the job that devices of the workstation execute.
     #[must_use]
     pub const fn lines(&self) -> &StationLines {
         &self.lines
@@ -155,14 +148,12 @@ impl Desk {
         &mut self.lines
     }
 
-    /// True if the safety circuit is open.
     #[must_use]
     pub fn is_safety_open(&self) -> bool {
         self.mapping.is_safety_open(&self.seen)
     }
 
-    /// Carry out a tick of the present line. An open safety circuit makes the outputs of all devices safe, until they
-    /// are released.
+    /// An open safety circuit makes the outputs of all devices safe, until they are released.
     fn advance_lines(&mut self) {
         self.lines.step(&self.seen);
         if self.is_safety_open() {
@@ -174,7 +165,6 @@ impl Desk {
         self.events.extend(asks.map(|what| FieldEvent { device: OPERATOR.to_owned(), what, held }));
     }
 
-    /// The events since the last call.
     pub fn take_events(&mut self) -> Vec<FieldEvent> {
         std::mem::take(&mut self.events)
     }
@@ -231,8 +221,7 @@ impl Desk {
         devices.map(|(device, (orders, report, age))| (device, orders, report, age))
     }
 
-    /// Note the events of the newest reports, and carry out a tick of the present line; `inputs` are those of the
-    /// controller.
+    /// Notes the events of the newest reports, and carries out a tick of the present line.
     pub fn note_changes(&mut self, inputs: &DeviceInputs) {
         self.advance_lines();
         let Self { couplers, mapping, events, now, .. } = self;

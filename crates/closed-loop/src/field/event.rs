@@ -8,26 +8,20 @@ use couplers::Trip;
 pub struct FieldEvent {
     pub device: String,
     pub what: Happened,
-    /// The readings of converters that a stale device keeps, by their points.
-    pub held: Vec<(String, i64)>,
+    pub held: Vec<(String, i64)>, // the readings of converters that a stale device keeps, by their points
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Happened {
-    /// The device has not answered for this time, ms.
-    Stale(u32),
-    /// The device answers again after this time, ms, and continues.
-    Back(u32),
-    /// The outputs of the device are safe until an operator releases it.
-    Tripped(Trip),
+    Stale(u32),    // the device has not answered for this time, ms
+    Back(u32),     // the device answers again after this time, ms, and continues
+    Tripped(Trip), // the outputs of the device are safe until an operator releases it
     Released,
     /// The release was refused: an output that must be off at rest is commanded, the device does not answer, or the
     /// safety circuit is open.
     Refused,
-    /// A line of the job needs a person.
-    Asks(String),
-    /// The run has ended. True if the device has confirmed its last outputs.
-    Ended(bool),
+    Asks(String), // a line of the job needs a person
+    Ended(bool),  // the run has ended; true if the device has confirmed its last outputs
 }
 
 impl FieldEvent {

@@ -20,7 +20,6 @@ const LATE: [u8; 3] = [1, 2, 3]; // of a late frame
 
 pub type Wrong = &'static str;
 
-/// Disturbances; each is one fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     CommandLost,

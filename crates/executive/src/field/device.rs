@@ -31,27 +31,23 @@ const EXCHANGES: [Duration; 2] = [Duration::from_millis(1), Duration::from_milli
 /// Longest time in which a device that is dropped confirms its last outputs.
 const MOST_ENDING: Duration = Duration::from_millis(300);
 
-/// Why a device cannot be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum DeviceError {
     #[error(transparent)]
     Plan(#[from] PlanError),
     #[error("no thread for the device at {address}: {source}")]
     Thread { address: SocketAddr, source: io::Error },
-    /// Two controllers of a device would each undo what the other writes.
     #[error("another process of this machine controls the device at {address}: end it first")]
     InUse { address: SocketAddr },
     #[error("the device at {address} cannot be taken: {source}")]
     Lock { address: SocketAddr, source: io::Error },
 }
 
-/// A device with a thread of its own.
 pub struct Device {
     orders: latest::Writer<Orders>,
     reports: latest::Reader<Report>,
     newest: Orders,
-    /// Start of slot 0, ns of `CLOCK_MONOTONIC`.
-    start: Arc<AtomicU64>,
+    start: Arc<AtomicU64>, // start of slot 0, ns of `CLOCK_MONOTONIC`
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
     _lock: Lock,
@@ -62,11 +58,8 @@ fn nanoseconds(time: Duration) -> u64 {
 }
 
 impl Device {
-    /// Starts the thread of a device. It connects and reads, and writes nothing before [`Self::order`]. The thread
-    /// calls `prepare` first, for example to request real-time scheduling.
-    ///
-    /// # Errors
-    /// [`DeviceError`]. A device that does not answer is not an error: its report shows it.
+    /// The thread connects and reads, and writes nothing before [`Self::order`]. It calls `prepare` first, for example
+    /// to request real-time scheduling. A device that does not answer is not an error: its report shows it.
     pub fn open(
         address: SocketAddr,
         timeout: Duration,

@@ -22,10 +22,7 @@ pub struct Lock {
 }
 
 impl Lock {
-    /// Takes a device.
-    ///
-    /// # Errors
-    /// [`DeviceError::InUse`] if a process of this machine has it, also this one; [`DeviceError::Lock`].
+    /// Fails if a process of this machine has the device, also this one.
     pub fn take(address: SocketAddr, unit: u8) -> Result<Self, DeviceError> {
         let failed = |source: io::Error| match source.kind() {
             ErrorKind::AddrInUse => DeviceError::InUse { address },

@@ -23,7 +23,6 @@ pub const MOST_CONNECTIONS: usize = 3;
 /// A connection without a byte for this time is closed: its client may have lost its power. CHOSEN.
 const IDLE: Duration = Duration::from_secs(10);
 
-/// Why a station cannot be opened.
 #[derive(Debug, thiserror::Error)]
 #[error("a station cannot listen at TCP {address}: {source}")]
 pub struct StationError {
@@ -32,7 +31,6 @@ pub struct StationError {
 }
 
 impl StationError {
-    /// Why the address cannot be used.
     #[must_use]
     pub fn kind(&self) -> ErrorKind {
         self.source.kind()
@@ -41,32 +39,25 @@ impl StationError {
 
 struct Shared {
     coupler: Mutex<Emulated>,
-    /// The network is down: nothing arrives, and nothing is answered.
-    is_cut: AtomicBool,
+    is_cut: AtomicBool, // the network is down: nothing arrives, and nothing is answered
     /// Number of restarts, changed while the coupler is locked: connections of an earlier one are closed.
     restarts: AtomicU64,
     stop: AtomicBool,
     traffic: Traffic,
 }
 
-/// What clients do.
 #[derive(Debug, Default)]
 struct Traffic {
     connections: AtomicUsize,
     refused: AtomicU64,
-    /// Connections that were closed because of bytes that are no request.
-    garbled: AtomicU64,
+    garbled: AtomicU64, // connections that were closed because of bytes that are no request
     requests: AtomicU64,
 }
 
-/// Connections and requests of a station.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Clients {
-    /// Open connections.
     pub connections: usize,
-    /// Connections that were refused because there were too many.
     pub refused: u64,
-    /// Connections that were closed because of bytes that are no request.
     pub garbled: u64,
     pub requests: u64,
 }
@@ -86,10 +77,7 @@ pub struct Station {
 }
 
 impl Station {
-    /// Listens at `address`; port 0 chooses a free one.
-    ///
-    /// # Errors
-    /// [`StationError`] if the address cannot be used.
+    /// Listens at `address`; port 0 chooses a free one. Fails if the address cannot be used.
     pub fn open(address: SocketAddr, coupler: Emulated) -> Result<Self, StationError> {
         let failed = |source| StationError { address, source };
         let listener = TcpListener::bind(address).map_err(failed)?;
@@ -110,7 +98,6 @@ impl Station {
         Ok(Self { shared, address, thread: Some(thread) })
     }
 
-    /// The address on which the station listens.
     #[must_use]
     pub const fn address(&self) -> SocketAddr {
         self.address
@@ -123,7 +110,6 @@ impl Station {
         action(&mut coupler)
     }
 
-    /// Connections and requests since the start.
     #[must_use]
     pub fn clients(&self) -> Clients {
         let traffic = &self.shared.traffic;
@@ -135,8 +121,7 @@ impl Station {
         }
     }
 
-    /// Cuts the network, or joins it. Requests that were sent in between arrive when it is joined, unless the client
-    /// has reset its connection.
+    /// Requests that were sent while cut arrive when it is joined, unless the client has reset its connection.
     pub fn cut(&self, is_cut: bool) {
         self.shared.is_cut.store(is_cut, Ordering::Relaxed);
     }
@@ -194,7 +179,6 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
     }
 }
 
-/// Answers the requests of a connection.
 fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_nodelay(true)?;

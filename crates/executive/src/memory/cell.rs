@@ -8,8 +8,7 @@ use rcs_core::{Plain, name::Name16, tick::Tick};
 use super::text::Text;
 
 pub(super) const CELL: &str = "cell";
-/// Greatest number of parts in the view.
-pub const PARTS: usize = 24;
+pub const PARTS: usize = 24; // greatest number of parts in the view
 
 /// The view of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]

@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-/// Why a line has failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure {
     pub line: String,
@@ -11,34 +10,24 @@ pub struct Failure {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Why {
-    /// The mapping has no entry for the line.
-    NoEntry,
-    /// This other line is still executed.
-    Occupied(String),
-    /// A condition of `needs` does not hold.
-    Needs(Observed),
-    /// An input of `fault` is on.
-    Fault(Observed),
-    /// A condition of `while` is lost.
-    Lost(Observed),
-    /// This condition of `begun` did not hold in time, s.
-    NotBegun(Observed, u16),
-    /// This condition of `done` did not hold in time, s.
-    NotDone(Observed, u16),
+    NoEntry,                 // the mapping has no entry for the line
+    Occupied(String),        // this other line is still executed
+    Needs(Observed),         // a condition of `needs` does not hold
+    Fault(Observed),         // an input of `fault` is on
+    Lost(Observed),          // a condition of `while` is lost
+    NotBegun(Observed, u16), // this condition of `begun` did not hold in time, s
+    NotDone(Observed, u16),  // this condition of `done` did not hold in time, s
     /// This device was tripped before the line had begun, so it is unknown whether the line has begun.
     Unknown(String),
-    /// This device was tripped after the line had begun.
-    Interrupted(String),
-    /// This device is tripped; the line can begin again.
-    Tripped(String),
+    Interrupted(String), // this device was tripped after the line had begun
+    Tripped(String),     // this device is tripped; the line can begin again
 }
 
 /// A point and its value when a line failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Observed {
     pub point: String,
-    /// `None`: not read in time.
-    pub found: Option<i64>,
+    pub found: Option<i64>, // `None`: not read in time
     pub expected: i64,
 }
 

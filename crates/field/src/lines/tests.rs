@@ -62,8 +62,7 @@ const FAULT: u16 = 1 << 6;
 const CLEAR: u16 = 1 << 7;
 const OPENED: u16 = 1 << 0;
 const CLAMPED: u16 = 1 << 2;
-/// The machine before its start.
-const IDLE: u16 = READY | CLEAR | CLAMPED;
+const IDLE: u16 = READY | CLEAR | CLAMPED; // the machine before its start
 const WORKS: u16 = BUSY | CLEAR | CLAMPED;
 const START: u16 = 1 << 3;
 
@@ -73,8 +72,7 @@ struct Bench {
     inputs: u16,
     is_tripped: bool,
     age_ms: u32,
-    /// Rising edges of the machine's start output.
-    starts: u32,
+    starts: u32, // rising edges of the machine's start output
     last: u16,
 }
 

@@ -58,18 +58,15 @@ pub(crate) const KIND: FileKind = FileKind {
     magnitudes: [1e-6, 1e10],
 };
 
-/// The form of the file that this version reads.
-const FORM: u32 = 1;
+const FORM: u32 = 1; // the form of the file that this version reads
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mapping {
     pub name: String,
-    /// The devices, in the order of their names.
-    pub devices: Vec<Device>,
+    pub devices: Vec<Device>, // the devices, in the order of their names
     pub inputs: Vec<InPoint>,
     pub outputs: Vec<OutPoint>,
-    /// How the devices execute lines of jobs.
-    pub lines: Vec<Sequence>,
+    pub lines: Vec<Sequence>, // how the devices execute lines of jobs
     /// How each group of devices is present, in the order of [`Group::ALL`].
     presence: [Presence; Group::ALL.len()],
 }
@@ -78,22 +75,17 @@ pub struct Mapping {
 pub struct Device {
     pub name: String,
     pub address: SocketAddr,
-    /// Time between two exchanges, ms.
-    pub exchange_ms: u16,
-    /// Time for an answer, ms.
-    pub timeout_ms: u16,
-    /// Plan of the connection: address, process data, watchdog.
-    pub plan: Plan,
+    pub exchange_ms: u16, // time between two exchanges, ms
+    pub timeout_ms: u16,  // time for an answer, ms
+    pub plan: Plan,       // plan of the connection: address, process data, watchdog
 }
 
 /// How a group of devices is present.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
     Mapped,
-    /// All its inputs have a fixed value.
-    Fixed,
-    /// It is not there: jobs that need it are refused.
-    Absent,
+    Fixed,  // all its inputs have a fixed value
+    Absent, // it is not there: jobs that need it are refused
     Simulated,
 }
 
@@ -114,12 +106,10 @@ impl Presence {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Slot {
     pub device: usize,
-    /// Index of the word in its image; of the first one of two.
-    pub word: usize,
+    pub word: usize, // index of the word in its image; of the first one of two
     pub bit: Option<u8>,
     pub format: Format,
-    /// Of two words the low one is first.
-    pub low_first: bool,
+    pub low_first: bool, // of two words the low one is first
     pub invert: bool,
 }
 
@@ -134,14 +124,12 @@ pub enum Target<T> {
 pub struct InPoint {
     pub name: String,
     pub target: Target<Input>,
-    /// Age after which it is stale, ms.
-    pub stale_ms: u16,
+    pub stale_ms: u16, // age after which it is stale, ms
     pub(crate) group: Group,
     pub(crate) from: Origin,
     pub(crate) range: RangeInclusive<i64>,
     pub(crate) line: Option<Line>,
-    /// The lines of the grippers 1 to 3, where they differ.
-    pub(crate) by_gripper: [Option<Line>; 3],
+    pub(crate) by_gripper: [Option<Line>; 3], // the lines of the grippers 1 to 3, where they differ
     pub(crate) then: Option<i64>,
 }
 
@@ -149,8 +137,7 @@ pub struct InPoint {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
     Slot(Slot),
-    /// It never changes.
-    Fixed(i64),
+    Fixed(i64), // it never changes
 }
 
 impl InPoint {
@@ -196,10 +183,8 @@ impl InPoint {
 pub struct OutPoint {
     pub name: String,
     pub target: Target<Output>,
-    /// Value at the start, at the end, and when the controller is lost.
-    pub safe: i64,
-    /// It may be on while nothing moves.
-    pub rest: bool,
+    pub safe: i64,  // value at the start, at the end, and when the controller is lost
+    pub rest: bool, // it may be on while nothing moves
     pub(crate) group: Group,
     pub(crate) slot: Slot,
     pub(crate) range: RangeInclusive<i64>,
@@ -216,23 +201,18 @@ impl OutPoint {
         self.slot.device
     }
 
-    /// Its value in the image of its device.
     #[must_use]
     pub fn get(&self, image: &OutWords) -> i64 {
         self.slot.get(&image.words)
     }
 
-    /// Set its value in the image of its device.
     pub fn set(&self, value: i64, image: &mut OutWords) {
         self.slot.put(&mut image.words, value);
     }
 }
 
 impl Mapping {
-    /// Reads a mapping.
-    ///
-    /// # Errors
-    /// All mistakes of the file, each with its line.
+    /// Reads a mapping. Errors: all mistakes of the file, each with its line.
     pub fn parse(source: &Source) -> Result<Self, Diagnostics> {
         let mut built = None;
         Document::load(source, KIND, |sheet: &Sheet, stand_ins, problems| {
@@ -262,7 +242,6 @@ impl Mapping {
             .unwrap_or(Presence::Simulated)
     }
 
-    /// The groups that are present in this way.
     pub fn groups(&self, presence: Presence) -> impl Iterator<Item = Group> {
         Group::ALL.into_iter().filter(move |group| self.presence(*group) == presence)
     }

@@ -32,12 +32,16 @@ use crate::{
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// The bytes cannot be decoded.
-    Garbled(CommandError),
+    Garbled(CommandError), // the bytes cannot be decoded
     /// The number belongs to another command.
-    Changed { number: u16 },
+    Changed {
+        number: u16,
+    },
     /// The number is not the next one.
-    OutOfOrder { expected: u16, found: u16 },
+    OutOfOrder {
+        expected: u16,
+        found: u16,
+    },
 }
 
 impl Refusal {

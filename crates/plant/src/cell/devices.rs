@@ -30,20 +30,15 @@ const CLEAR: f64 = 20.0;
 /// Numbers of programs and pockets, with their names in the cell description.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Programs {
-    /// Programs of the vise.
     pub vise: Vec<(i64, String)>,
-    /// Programs of the machines: number, location, blank and part.
-    pub machine: Vec<(i64, [String; 3])>,
-    /// Tools in the pockets of the drum.
-    pub drum: Vec<(i64, String)>,
+    pub machine: Vec<(i64, [String; 3])>, // programs of the machines: number, location, blank and part
+    pub drum: Vec<(i64, String)>,         // tools in the pockets of the drum
 }
 
-/// Why the cell has no device for a point, or for a program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DeviceError {
     #[error("{point}: the cell description has {expected}")]
     NoDevice { point: String, expected: String },
-    /// A program with a name that the cell does not have.
     #[error("program {number}: {why}")]
     Program { number: i64, why: String },
 }
@@ -53,11 +48,9 @@ struct Machine {
     location: String,
     start: bool,
     program: i64,
-    /// Ticks of the cycle that are left, and its program.
-    cycle: Option<(u64, i64)>,
+    cycle: Option<(u64, i64)>, // ticks of the cycle that are left, and its program
     done: bool,
-    /// Ticks for which the fault is still reported.
-    fault: u64,
+    fault: u64, // ticks for which the fault is still reported
 }
 
 /// The devices, with the outputs and sensors of a mapping.
@@ -67,25 +60,19 @@ pub struct Devices {
     outputs: Vec<Option<Output>>,
     sensors: Vec<Sensor>,
     machines: Vec<Machine>,
-    /// The opening and the program that the vise was given last.
-    vise: Option<(Jaws, i64)>,
+    vise: Option<(Jaws, i64)>, // the opening and the program that the vise was given last
     vise_program: i64,
     asked: Option<Jaws>,
     fingers: [bool; 2],
     pocket: i64,
-    /// Pockets whose tool was brought to the fingers.
-    emptied: Vec<i64>,
+    emptied: Vec<i64>, // pockets whose tool was brought to the fingers
     messages: Vec<String>,
-    /// The emergency stop of the safety circuit is pressed, in addition to those of the robot.
-    estop: bool,
+    estop: bool, // the emergency stop of the safety circuit is pressed, in addition to those of the robot
 }
 
 impl Devices {
-    /// Devices for the points with these names: outputs of the controller, and its inputs. Names of the controller's
-    /// own records are permitted, and not used.
-    ///
-    /// # Errors
-    /// [`DeviceError`] for a point or a program of a device that the cell does not have.
+    /// `names` are of outputs and inputs; names of the controller's own records are permitted, and not used. Fails for
+    /// a point or a program that the cell does not have.
     pub fn new<'n>(
         cell: &CellDescription,
         programs: Programs,
@@ -210,7 +197,6 @@ impl Devices {
         self.messages.push(format!("the machine at {} does not start: {why}", machine.location));
     }
 
-    /// A tick of a machine.
     fn work(&mut self, cell: &mut Cell, index: usize) {
         let Some(machine) = self.machines.get_mut(index) else { return };
         machine.fault = machine.fault.saturating_sub(1);

@@ -67,8 +67,7 @@ pub struct Cell {
     world: World,
     t3: T3Controller,
     host_ready: bool,
-    /// The parts gripper, the v-gripper, the tool gripper.
-    grippers: [Gripper; 3],
+    grippers: [Gripper; 3], // the parts gripper, the v-gripper, the tool gripper
     changer: Changer,
     drum: Drum,
     pedestal: Pedestal,
@@ -93,11 +92,9 @@ pub struct Cell {
     dead_times: DeadTimes,
     faults: Injector,
     resolver_box: ResolverBox,
-    /// Number of ticks in which the jaw of the vise should have moved and did not.
-    jaw_waits: u32,
+    jaw_waits: u32, // number of ticks in which the jaw of the vise should have moved and did not
     events: Vec<CellEvent>,
-    /// True once it was reported that the arm cannot follow the robot.
-    stays_behind: bool,
+    stays_behind: bool, // true once it was reported that the arm cannot follow the robot
     droop: Option<Droop>,
     #[serde(with = "crate::image::record")]
     inputs: DeviceInputs,
@@ -105,17 +102,12 @@ pub struct Cell {
 
 impl Cell {
     /// Build the cell of a description. The seed determines the noise of the sensors and the random places of parts.
-    ///
-    /// # Errors
-    /// [`CellError`] if the description cannot be used.
+    /// Fails if the description cannot be used.
     pub fn new(description: &CellDescription, seed: u64) -> Result<Self, CellError> {
         Self::with_faults(description, seed, &FaultPlan::default())
     }
 
-    /// Like [`Cell::new`], with the faults of a plan.
-    ///
-    /// # Errors
-    /// [`CellError`] if the description cannot be used.
+    /// Like [`Cell::new`], with the faults of a plan. Fails if the description cannot be used.
     pub fn with_faults(
         description: &CellDescription,
         seed: u64,
@@ -222,13 +214,12 @@ impl Cell {
         inputs
     }
 
-    /// Like [`Cell::step`], for a robot outside the simulation: the simulated arm, and with it the rest of the cell,
-    /// follows `position`, which the robot has acknowledged; `None` if none is known. The simulated T3 controller is
-    /// not used: the caller sends `outputs.link_tx` to the robot and fills in its answer (`link_rx` and `link_ready`
-    /// are returned empty).
+    /// [`Cell::step`] for a robot outside the simulation: the simulated arm, and with it the cell, follows `position`,
+    /// which the robot has acknowledged, if any. The simulated T3 controller is not used: the caller sends
+    /// `outputs.link_tx` to the robot and fills in its answer (`link_rx` and `link_ready` are returned empty).
     ///
-    /// The arm is limited to the speeds of its servos, so that a distant first position causes a motion and not
-    /// a jump. If a position is unreachable, the arm does not move and reports a [`CellEvent::CannotFollow`].
+    /// The arm is limited to the speeds of its servos, so that a distant first position causes a motion and not a
+    /// jump. At an unreachable position it does not move and reports a [`CellEvent::CannotFollow`].
     pub fn step_following(&mut self, position: Option<&Plate>, outputs: &DeviceOutputs) -> DeviceInputs {
         let outputs = &self.begin_tick(outputs);
         let followed = position.map_or(Ok(()), |plate| self.t3.follow(plate));
@@ -267,9 +258,8 @@ impl Cell {
         }));
     }
 
-    /// Add faults that begin in later ticks to those of the plan that the cell was built with.
-    ///
-    /// Faults that displace something are ignored: the cell is already built.
+    /// Adds faults that begin in later ticks to those of the plan. Faults that displace something are ignored: the
+    /// cell is already built.
     pub fn add_faults(&mut self, faults: &FaultPlan, seed: u64) {
         self.faults.add(faults, seed);
     }
@@ -280,7 +270,6 @@ impl Cell {
         self.faults.forget_past();
     }
 
-    /// Faults of the plan that have happened so far.
     #[must_use]
     pub fn faults(&self) -> Vec<FaultResult> {
         self.faults.struck()
@@ -292,7 +281,6 @@ impl Cell {
         self.faults.is_device_cut(device)
     }
 
-    /// Advance all moving bodies by one tick.
     fn advance(&mut self, outputs: &DeviceOutputs) {
         self.pedestal.table.order(&outputs.pedestal_table);
         self.step_bodies(outputs);
@@ -301,7 +289,6 @@ impl Cell {
         self.look(outputs);
     }
 
-    /// Once per tick: detect new contacts and fallen parts.
     fn after_tick(&mut self) {
         self.check_clearance();
         if !self.world.quarantine().is_empty() {
@@ -364,22 +351,18 @@ impl Cell {
         self.parts.iter().find(|part| part.id == id).map(|part| part.frame(&self.world))
     }
 
-    /// Events since the last call.
     pub fn events(&mut self) -> Vec<CellEvent> {
         std::mem::take(&mut self.events)
     }
 
-    /// Press a key of the T3 controller's console, its teach pendant, or an emergency stop.
-    ///
-    /// # Errors
-    /// [`Refusal`] with the missing step. The state is then unchanged.
+    /// Press a key of the T3 controller's console, its teach pendant, or an emergency stop. Errors: [`Refusal`] with
+    /// the missing step. The state is then unchanged.
     pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
         let done = self.t3.press(key);
         self.hear_t3();
         done
     }
 
-    /// The panel of the rotary table's controller.
     #[must_use]
     pub const fn table_panel(&self) -> TablePanel {
         self.pedestal.table.panel()
@@ -415,10 +398,7 @@ impl Cell {
     }
 
     /// Move the arm to an end-plate frame (inches) by the end of the next tick, as with the teach pendant: not through
-    /// the line.
-    ///
-    /// # Errors
-    /// [`DriveError`] if the arm cannot reach the position; it does not move.
+    /// the line. Fails if the arm cannot reach the position; it does not move.
     pub fn drive(&mut self, plate: &Frame) -> Result<(), DriveError> {
         self.t3.drive(plate)
     }

@@ -32,14 +32,10 @@ struct Running {
     fault: Fault,
     noise: Noise,
     active: bool,
-    /// The tick in which it began.
-    began: u64,
-    /// The first tick after its end, if it has a rate.
-    until: u64,
-    /// The value at which a sensor is stuck.
-    caught: Option<i64>,
-    /// Words in the delay line of a sensor.
-    late: DelayLine,
+    began: u64,          // the tick in which it began
+    until: u64,          // the first tick after its end, if it has a rate
+    caught: Option<i64>, // the value at which a sensor is stuck
+    late: DelayLine,     // words in the delay line of a sensor
     times: u64,
     first: u64,
     last: u64,
@@ -50,26 +46,19 @@ pub struct FaultResult {
     /// Its number in the file, from 1.
     pub number: usize,
     pub text: String,
-    /// Number of times that it has begun.
-    pub times: u64,
-    /// The tick in which it first began.
-    pub first: u64,
-    /// The last tick in which it was present.
-    pub last: u64,
+    pub times: u64, // number of times that it has begun
+    pub first: u64, // the tick in which it first began
+    pub last: u64,  // the last tick in which it was present
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Delivery {
     pub missing: bool,
-    /// The part that is delivered instead.
-    pub instead: Option<String>,
-    /// Offset from its place along world X and Y, in.
-    pub aside: [f64; 2],
-    /// Rotation about the tool's X, degrees.
-    pub angle: f64,
+    pub instead: Option<String>, // the part that is delivered instead
+    pub aside: [f64; 2],         // offset from its place along world X and Y, in
+    pub angle: f64,              // rotation about the tool's X, degrees
 }
 
-/// The beginning or the end of a fault.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Change {
     pub number: usize,
@@ -92,7 +81,6 @@ impl Injector {
         self.push(plan.faults.iter().filter(stays), plan.seed, seed);
     }
 
-    /// Discard the faults that are over.
     pub(crate) fn forget_past(&mut self) {
         let next = self.tick + 1;
         self.faults.retain(|running| running.active || running.fault.when.until > next);
@@ -171,31 +159,26 @@ impl Injector {
         }
     }
 
-    /// True if the air supply has failed.
     #[must_use]
     pub fn air_lost(&self) -> bool {
         self.active().any(|what| *what == What::AirLost)
     }
 
-    /// True if the hydraulics have failed.
     #[must_use]
     pub fn hydraulics_lost(&self) -> bool {
         self.active().any(|what| *what == What::HydraulicsLost)
     }
 
-    /// True if the jaw of the vise is stuck.
     #[must_use]
     pub fn jaw_stuck(&self) -> bool {
         self.active().any(|what| *what == What::JawStuck)
     }
 
-    /// True if the camera is blind.
     #[must_use]
     pub fn camera_blind(&self) -> bool {
         self.active().any(|what| *what == What::CameraBlind)
     }
 
-    /// True if a device of the field I/O has no connection.
     #[must_use]
     pub fn is_device_cut(&self, device: &str) -> bool {
         self.active().any(|what| matches!(what, What::FieldCut(cut) if cut == device))

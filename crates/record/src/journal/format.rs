@@ -23,26 +23,16 @@ use rcs_core::{
 use super::kept::{doubted, resumed};
 use crate::layout;
 
-/// First bytes of every journal.
-pub const MAGIC: [u8; 8] = *b"RCSJRNL\0";
-/// Version of the format.
-const VERSION: u32 = 1;
-/// Unit of the parts of a journal, bytes: no two slots share a block of the disk.
-const BLOCK: usize = 4096;
-/// Bytes of the head.
-const HEAD: usize = BLOCK;
-/// Slots of a journal.
-pub const SLOTS: usize = 8;
-/// Bytes of a slot.
-pub const SLOT: usize = (8 + Entry::SIZE + 8).div_ceil(BLOCK) * BLOCK;
-/// Bytes of a journal.
-pub const LENGTH: usize = HEAD + SLOTS * SLOT;
-/// Number of the first entry.
-pub const FIRST: u64 = 1;
-/// Position of the hash in the head.
-const HEAD_HASH: usize = HEAD - 8;
-/// Position of the identity in the head.
-const IDENTITY: usize = 28;
+pub const MAGIC: [u8; 8] = *b"RCSJRNL\0"; // first bytes of every journal
+const VERSION: u32 = 1; // version of the format
+const BLOCK: usize = 4096; // unit of the parts of a journal, bytes: no two slots share a block of the disk
+const HEAD: usize = BLOCK; // bytes of the head
+pub const SLOTS: usize = 8; // slots of a journal
+pub const SLOT: usize = (8 + Entry::SIZE + 8).div_ceil(BLOCK) * BLOCK; // bytes of a slot
+pub const LENGTH: usize = HEAD + SLOTS * SLOT; // bytes of a journal
+pub const FIRST: u64 = 1; // number of the first entry
+const HEAD_HASH: usize = HEAD - 8; // position of the hash in the head
+const IDENTITY: usize = 28; // position of the identity in the head
 
 /// What a controller knows after a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -70,7 +60,6 @@ pub struct Entry {
 /// What a journal belongs to: task data, job, cell and program, by name.
 pub type Identity = BTreeMap<String, String>;
 
-/// Why bytes are not a journal that can be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
     #[error("it is no journal: it does not begin with RCSJRNL")]
@@ -93,7 +82,6 @@ pub enum FormatError {
         "{damaged} of {SLOTS} entries of the journal are damaged: one write that was cut off damages one"
     )]
     Damaged { damaged: usize },
-    /// An older entry is damaged or missing, which no interrupted write can cause.
     #[error("the entry before number {newest} of the journal is damaged or missing")]
     Gap { newest: u64 },
 }
@@ -102,14 +90,11 @@ fn by(program: &str) -> String {
     if program.is_empty() { String::new() } else { format!(" (version {program})") }
 }
 
-/// A journal that was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contents {
     pub identity: Identity,
-    /// The newest complete entry.
-    pub newest: Entry,
-    /// A later entry was cut off while it was written.
-    pub torn: bool,
+    pub newest: Entry, // the newest complete entry
+    pub torn: bool,    // a later entry was cut off while it was written
 }
 
 impl Contents {
@@ -122,10 +107,8 @@ impl Contents {
     }
 }
 
-/// Key of the identity: version of the program.
-pub const PROGRAM: &str = "program";
+pub const PROGRAM: &str = "program"; // key of the identity: version of the program
 
-/// Identifies the layout of an entry.
 #[must_use]
 pub fn layout_of_entries() -> u64 {
     let mut digest = Digest::new();
@@ -133,8 +116,7 @@ pub fn layout_of_entries() -> u64 {
     digest.value()
 }
 
-/// The head of a journal, and the hash on which those of its slots are based. An identity that is too long for the
-/// head is cut at a line.
+/// Also returns the hash on which those of its slots are based. An identity that is too long is cut at a line.
 #[must_use]
 pub fn head(identity: &Identity) -> (Vec<u8>, u64) {
     let mut text = String::new();
@@ -188,10 +170,7 @@ pub fn fill(slot: &mut [u8], of_head: u64, sequence: u64, entry: &Entry) {
     *place = hash.to_le_bytes();
 }
 
-/// Read a journal.
-///
-/// # Errors
-/// [`FormatError`] unless the newest entry is certain, apart from one entry that was being written.
+/// Read a journal. Fails unless the newest entry is certain, apart from one entry that was being written.
 pub fn read(bytes: &[u8]) -> Result<Contents, FormatError> {
     if !bytes.starts_with(&MAGIC) {
         return Err(FormatError::Foreign);
@@ -250,10 +229,8 @@ pub fn read(bytes: &[u8]) -> Result<Contents, FormatError> {
     Ok(Contents { identity, newest: entry, torn })
 }
 
-/// First bytes of every saved cell of a journal.
-const OF_CELL: [u8; 8] = *b"RCSJCEL\0";
-/// Bytes before the entry of a saved cell: magic, layout, hash.
-const CELL_HEAD: usize = 24;
+const OF_CELL: [u8; 8] = *b"RCSJCEL\0"; // first bytes of every saved cell of a journal
+const CELL_HEAD: usize = 24; // bytes before the entry of a saved cell: magic, layout, hash
 
 /// A simulated cell after the tick of an entry, for the file beside the journal.
 #[must_use]
@@ -279,7 +256,6 @@ pub fn read_cell(bytes: &[u8]) -> Option<(Entry, &[u8])> {
     Some((from_bytes(image).ok()?, saved))
 }
 
-/// A slot that was read.
 enum Slot {
     Empty,
     Damaged,

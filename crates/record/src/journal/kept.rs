@@ -1,8 +1,6 @@
-//! The buffers that a controller keeps over a loss of power (docs/design/resume.md "Kept").
-//!
-//! A process keeps its estimates in its output buffers, and adopts them when it restarts. So common memory contains all
-//! that the processes need. Readings, rows and the state of the link are measured again, and the bias of the force
-//! sensor is valid only as long as the sensor has power.
+//! The buffers that a controller keeps over a loss of power (docs/design/resume.md "Kept"). A restarted process adopts
+//! the estimates in its output buffers, so common memory has all that is needed. Readings, rows and the state of the
+//! link are measured again, and the bias of the force sensor is valid only as long as the sensor has power.
 
 use interfaces::{
     CommonMemory, EmoveOutputs, GripOutputs, Header, JawsOutputs, PedestalOutputs, PrimOutputs, ProcessId,

@@ -34,13 +34,11 @@ pub use self::{
     kept::{doubted, kept, knowledge, resumed},
 };
 
-/// Ticks after which an entry is due although nothing has changed: one second.
-pub const HEARTBEAT: u64 = 25;
+pub const HEARTBEAT: u64 = 25; // ticks after which an entry is due although nothing has changed: one second
 
 /// Time in which the disk must take an entry, ms of the clock of the entries. In fast clock the run does not wait.
 const LATE: u64 = 5_000;
 
-/// Why a journal cannot be begun or used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum JournalError {
@@ -59,9 +57,6 @@ pub enum JournalError {
 }
 
 /// Read a journal from its file.
-///
-/// # Errors
-/// [`JournalError`].
 pub fn open(path: &Path) -> Result<Contents, JournalError> {
     let limit = u64::try_from(LENGTH).unwrap_or(u64::MAX).saturating_mul(2);
     let bytes =
@@ -69,16 +64,13 @@ pub fn open(path: &Path) -> Result<Contents, JournalError> {
     read(&bytes).map_err(|source| JournalError::Format { path: path.to_owned(), source })
 }
 
-/// The run's end of the journal.
 pub struct Journal {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
     path: PathBuf,
-    /// The last entry that was handed over, and the knowledge in it.
-    last: Box<(Entry, CommonMemory)>,
+    last: Box<(Entry, CommonMemory)>, // the last entry that was handed over, and the knowledge in it
     has_last: bool,
-    /// The last trouble that was reported.
-    reported: Option<String>,
+    reported: Option<String>, // the last trouble that was reported
 }
 
 struct Shared {
@@ -88,23 +80,17 @@ struct Shared {
 
 struct State {
     entry: Box<Entry>,
-    /// The entry has not been taken by the thread.
-    is_new: bool,
-    /// The oldest entry that the thread has not taken: its tick and its time.
-    since: (Tick, u64),
+    is_new: bool,       // the entry has not been taken by the thread
+    since: (Tick, u64), // the oldest entry that the thread has not taken: its tick and its time
     is_over: bool,
-    /// A saved cell that the thread has not taken.
-    cell: Option<Vec<u8>>,
-    /// Why the last entry is not on the disk.
-    trouble: Option<String>,
+    cell: Option<Vec<u8>>,   // a saved cell that the thread has not taken
+    trouble: Option<String>, // why the last entry is not on the disk
 }
 
 impl Journal {
-    /// Begin a journal, with `first` as its first entry. An earlier one at this path is replaced as a whole. If its run
-    /// has not ended, and `first` does not continue it, it is kept under another name ([`kept_before`]).
-    ///
-    /// # Errors
-    /// [`JournalError`] if the file belongs to another run, is no journal, or cannot be created.
+    /// Begin a journal, with `first` as its first entry. An earlier one at this path is replaced as a whole. If its
+    /// run has not ended, and `first` does not continue it, it is kept under another name ([`kept_before`]). Fails if
+    /// the file belongs to another run, is no journal, or cannot be created.
     pub fn start(path: &Path, identity: &Identity, first: Option<&Entry>) -> Result<Self, JournalError> {
         let failed = |source| JournalError::Create { path: path.to_owned(), source };
         if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
@@ -196,8 +182,7 @@ impl Journal {
         }
     }
 
-    /// The trouble of the journal, or `Some(None)` after it has ended; each change is returned once. Call it between two
-    /// ticks.
+    /// `Some(None)` after it has ended; each change is returned once. Call it between two ticks.
     pub fn trouble(&mut self) -> Option<Option<String>> {
         let Ok(state) = self.shared.state.try_lock() else { return None };
         let (tick, written) = state.since;
@@ -270,7 +255,6 @@ fn locked(shared: &Shared) -> MutexGuard<'_, State> {
     shared.state.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Lock an earlier journal, if there is one.
 fn claim(path: &Path) -> Result<Option<File>, JournalError> {
     let file = match OpenOptions::new().read(true).write(true).open(path) {
         Ok(file) => file,
@@ -294,14 +278,12 @@ fn lock(file: &File, path: &Path) -> Result<(), JournalError> {
     }
 }
 
-/// The thread's end.
 struct Writer {
     file: File,
     path: PathBuf,
     identity: (u64, u64),
     of_head: u64,
-    /// Number of the last entry on the disk.
-    sequence: u64,
+    sequence: u64, // number of the last entry on the disk
     slot: Vec<u8>,
 }
 

@@ -23,8 +23,7 @@ pub trait Value {
 }
 
 pub trait Message {
-    /// Its name without the package.
-    const NAME: &'static str;
+    const NAME: &'static str; // its name without the package
 
     /// Its fields, in the order of their numbers from 1.
     fn fields(messages: &mut Vec<DescriptorProto>) -> Vec<FieldDescriptorProto>;
@@ -48,7 +47,6 @@ pub fn descriptor_set<M: Message>() -> Vec<u8> {
     encode_set(vec![file("rcs.proto", descriptor::PACKAGE, &[], messages)])
 }
 
-/// The bytes of a message.
 #[must_use]
 pub fn encode(message: &impl Message) -> Vec<u8> {
     let mut out = Vec::new();
@@ -124,7 +122,6 @@ impl<M: Message> Value for M {
     }
 }
 
-/// A list of texts or messages.
 impl<V: Value + Default> Value for Vec<V> {
     fn describe(name: &str, number: i32, messages: &mut Vec<DescriptorProto>) -> FieldDescriptorProto {
         repeated(V::describe(name, number, messages))

@@ -20,20 +20,16 @@ use interfaces::DeviceInputs;
 
 use crate::{boards::Controller, config::RunConfig, error::StartError, observer::Observer};
 
-/// Time for which a refusal must last beyond the watchdog: outputs and settings of an earlier run are free only after
-/// its watchdog has fired.
+/// Longest refusal beyond the watchdog: outputs and settings of an earlier run are free only after it has fired.
 const REFUSED_FOR: Duration = Duration::from_secs(2);
-/// Pause between two looks at devices that are not ready.
-const PAUSE: Duration = Duration::from_millis(10);
+const PAUSE: Duration = Duration::from_millis(10); // pause between two looks at devices that are not ready
 
 /// The devices of a mapping, each with its thread.
 pub struct FieldPort {
     mapping: Arc<Mapping>,
     devices: Vec<Device>,
-    /// Greatest age of the inputs of any device at a tick, ns.
-    ages: Box<Histogram>,
-    /// Time of a tick for reading and writing, ns.
-    shares: Box<Histogram>,
+    ages: Box<Histogram>,   // greatest age of the inputs of any device at a tick, ns
+    shares: Box<Histogram>, // time of a tick for reading and writing, ns
     reading: u64,
 }
 
@@ -42,9 +38,7 @@ fn nanoseconds(time: Duration) -> u64 {
 }
 
 impl FieldPort {
-    /// Start the threads of the devices. They connect and set up watchdogs, and write no output.
-    ///
-    /// # Errors
+    /// Start the threads of the devices. They connect and set up watchdogs, and write no output. Errors:
     /// [`StartError::FieldDevice`]. A device that does not answer is not an error here.
     pub fn open(mapping: Mapping) -> Result<Self, StartError> {
         let open = |device: &field::Device| {
@@ -66,10 +60,8 @@ impl FieldPort {
         })
     }
 
-    /// Wait until all devices are set up and their inputs are fresh.
-    ///
-    /// # Errors
-    /// [`StartError::FieldNotReady`] if a device refuses its set-up, or is not ready within the time limit.
+    /// Wait until all devices are set up and their inputs are fresh. Errors: [`StartError::FieldNotReady`] if a device
+    /// refuses its set-up, or is not ready within the time limit.
     pub fn gather(
         &mut self,
         config: &RunConfig,
@@ -187,13 +179,11 @@ impl FieldPort {
         desk.note_changes(inputs);
     }
 
-    /// Greatest age of the inputs of any device at a tick.
     #[must_use]
     pub fn ages(&self) -> Summary {
         self.ages.summary()
     }
 
-    /// Time of a tick for reading and writing the devices.
     #[must_use]
     pub fn shares(&self) -> Summary {
         self.shares.summary()

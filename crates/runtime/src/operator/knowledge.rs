@@ -12,10 +12,8 @@ use taskdata::files::TaskData;
 
 use super::written;
 
-/// Read `held OBJECT GRIP` or `held nothing`, the words after `resume`.
-///
-/// # Errors
-/// A message with the expected and the found text.
+/// Read `held OBJECT GRIP` or `held nothing`, the words after `resume`. Errors: a message with the expected and the
+/// found text.
 pub fn read(words: &[&str]) -> Result<Write, String> {
     let held = Variable::Held.text();
     match words {
@@ -28,10 +26,8 @@ pub fn read(words: &[&str]) -> Result<Write, String> {
     }
 }
 
-/// Check the name of the held object, or that nothing is held.
-///
-/// # Errors
-/// A message with the reason of the refusal, and the remedy.
+/// Check the name of the held object, or that nothing is held. Errors: a message with the reason of the refusal, and
+/// the remedy.
 pub fn check(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     if memory.emove.status.report == StatusReport::Executing {
         return Err("E-move executes a command: send PAUSE and ask again".to_owned());

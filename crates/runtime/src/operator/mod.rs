@@ -53,27 +53,19 @@ pub use self::{
 };
 use crate::{judge, neighbours::Neighbours};
 
-/// Largest number of requests executed in a tick. Others wait for the next one.
-pub const A_TICK: usize = 16;
+pub const A_TICK: usize = 16; // largest number of requests executed in a tick; others wait for the next one
 
 pub struct Operator {
-    /// The operators' joystick box. The lines of the job have another one.
-    hand: Joystick,
-    /// State of that box in the next tick.
-    shown: JoystickBox,
-    /// Entries at the terminals of the boards.
-    terminals: Terminals,
-    /// Part of a request that the run must execute.
-    later: Option<Later>,
+    hand: Joystick,       // the operators' joystick box; the lines of the job have another one
+    shown: JoystickBox,   // state of that box in the next tick
+    terminals: Terminals, // entries at the terminals of the boards
+    later: Option<Later>, // part of a request that the run must execute
     /// A request that waits until the commands control the robot again, and the tick in which it arrived.
     awaiting: Option<(Input, Tick)>,
-    /// True if the velocity knob is at zero until `go`.
-    is_stopped: bool,
+    is_stopped: bool, // the velocity knob is at zero until `go`
     sessions: Vec<String>,
-    /// Name of the operator in command.
-    commander: Option<String>,
-    /// True while the rotary table moves by a key that the commander has pressed.
-    turns_table: bool,
+    commander: Option<String>, // name of the operator in command
+    turns_table: bool,         // while the rotary table moves by a key that the commander has pressed
     /// True for a robot at a port: its knob goes to 0 when motion by hand ends with its session.
     robot_elsewhere: bool,
     counts: Requests,
@@ -89,36 +81,25 @@ pub struct Requests {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Later {
     Load(BlockNumber),
-    /// Play a job instead of the rest of the present one.
-    Play(String),
-    /// Withdraw a load that the session has requested and that is still pending.
-    Withdraw,
-    /// Execute the request when the commands control the robot again.
-    Await,
+    Play(String), // play a job instead of the rest of the present one
+    Withdraw,     // withdraw a load that the session has requested and that is still pending
+    Await,        // execute the request when the commands control the robot again
 }
 
-/// The parts of a run that a request reads and changes.
 pub struct Around<'a> {
-    /// The last tick.
     pub tick: Tick,
-    /// Common memory after that tick.
     pub memory: &'a CommonMemory,
-    /// The inputs of the devices in the next tick.
     pub inputs: &'a DeviceInputs,
-    /// Task data of the next tick, for reading lines of a job.
-    pub store: &'a Store,
-    /// Ignore errors in the records that a command uses.
-    pub unchecked: bool,
+    pub store: &'a Store, // Task data of the next tick, for reading lines of a job
+    pub unchecked: bool,  // ignore errors in the records that a command uses
     pub data: &'a Path,
     pub gate: &'a mut Gate,
     pub neighbours: &'a mut Neighbours,
     pub workstation: &'a mut SimulatedWorkstation,
-    /// True while a block is being checked: requests for a motion must wait.
-    pub loading: bool,
+    pub loading: bool, // while a block is being checked: requests for a motion must wait
 }
 
 impl Operator {
-    /// The initial state: the box is unused, and no operator is connected.
     #[must_use]
     pub fn new(robot_elsewhere: bool) -> Self {
         Self {
@@ -382,7 +363,6 @@ impl Operator {
         }
     }
 
-    /// The status of the run in one line.
     fn status(&self, around: &mut Around<'_>) -> String {
         let (stand_alone, is_ending) = (around.neighbours.is_stand_alone(), around.neighbours.is_ending());
         let job = match around.neighbours.job_under_way() {
@@ -414,7 +394,6 @@ impl Operator {
     }
 }
 
-/// An absolute path, for a program in another directory; data built into the program keep their name.
 fn directory(data: &Path) -> String {
     let absolute = if data.is_dir() { path::absolute(data) } else { Ok(data.to_owned()) };
     absolute.unwrap_or_else(|_| data.to_owned()).display().to_string()
@@ -430,10 +409,7 @@ fn no_device(field: &Desk, name: &str) -> String {
     format!("there is no device {name}; expected one of {}", names.join(", "))
 }
 
-/// The couplers of the run.
-///
-/// # Errors
-/// A message if the run has no couplers.
+/// The couplers of the run. Errors: a message if the run has no couplers.
 fn field<'a>(around: &'a mut Around<'_>) -> Result<&'a mut Desk, String> {
     let field = around.workstation.field.as_deref_mut();
     field.map(Field::desk_mut).ok_or_else(|| "this run has no couplers: --field".to_owned())

@@ -26,10 +26,8 @@ pub fn emergency(workstation: &SimulatedWorkstation) -> Option<String> {
     Some(format!("EMERGENCY: {} {is_are} pressed: {}, {START_UP}", sites.join(" and "), releases.join(", ")))
 }
 
-/// Refuse to continue a job under an emergency, unless a line of the job itself resets it.
-///
-/// # Errors
-/// The emergency and its remedy.
+/// Refuse to continue a job under an emergency, unless a line of the job itself resets it. Errors: the emergency and
+/// its remedy.
 pub fn check_job(around: &mut Around<'_>) -> Result<(), String> {
     match emergency(around.workstation) {
         Some(why) if !around.neighbours.job_under_way()?.resets_emergency() => {
@@ -50,10 +48,8 @@ pub fn is_moved_by_hand(memory: &CommonMemory) -> bool {
         || memory.task.status.report == HwsReport::JoystickOn
 }
 
-/// Refuse to make outputs safe while a command is executed or something is held: safe outputs hold no part.
-///
-/// # Errors
-/// The hindrance and its remedy.
+/// Refuse to make outputs safe while a command is executed or something is held: safe outputs hold no part. Errors:
+/// the hindrance and its remedy.
 pub fn check_safe(memory: &CommonMemory) -> Result<(), String> {
     if memory.task.status.report == HwsReport::Executing {
         return Err(

@@ -18,58 +18,37 @@ use crate::loads;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
-    /// Read the status; changes nothing.
-    Status,
-    /// Read the directory of the task data; changes nothing.
-    Data,
-    /// Read the state of the Active Pedestal; changes nothing.
+    Status, // read the status; changes nothing
+    Data,   // read the directory of the task data; changes nothing
     Pedestal,
-    /// Read the state of the couplers; changes nothing.
     Field,
-    /// Read a point of the couplers; changes nothing.
     Point(String),
-    /// Read what the controller knows, beside its sensors; changes nothing.
     Knowledge,
-    /// Release a tripped device.
-    Release(String),
-    /// Make the outputs of a device safe until it is released.
-    MakeSafe(String),
-    /// Set the velocity knob to zero.
+    Release(String),  // release a tripped device
+    MakeSafe(String), // make the outputs of a device safe until it is released
     Stop,
     Go,
-    /// Give up the command, so that another operator may take it.
-    Leave,
+    Leave, // give up the command, so that another operator may take it
     Note,
-    /// Make the job wait at the end of its line.
-    Wait,
+    Wait, // make the job wait at the end of its line
     GoOn,
-    /// Continue the job after the interrupted line.
-    Skip,
-    /// A command for Task, and its text.
+    Skip, // continue the job after the interrupted line
     Command(String, HwsCommand),
-    /// An action at the operator's own joystick box.
-    Box(BoxAction),
-    /// An entry at the terminal of a board.
+    Box(BoxAction), // an action at the operator's own joystick box
     Terminal(Entry),
-    /// Load a block of the data directory.
-    Load(BlockNumber),
-    /// Play a job of the data directory instead of the rest of the present one.
-    Play(String),
+    Load(BlockNumber), // load a block of the data directory
+    Play(String),      // play a job of the data directory instead of the rest of the present one
     /// Take over from a workstation controller in another process.
     StandAlone {
-        /// Also in the middle of a command.
-        now: bool,
+        now: bool, // also in the middle of a command
     },
-    /// Return the command to the workstation controller.
     Workstation,
-    /// Another action in the cell, and its text.
-    Cell(Workstation, String),
+    Cell(Workstation, String), // another action in the cell, and its text
 }
 
 /// Requests that change nothing and are not logged.
 const QUESTIONS: [&str; 5] = [STATUS, DATA, PEDESTAL, FIELD, RESUME];
-/// Begin of the request for the state of a point.
-const SHOW: &str = "io show ";
+const SHOW: &str = "io show "; // begin of the request for the state of a point
 
 /// True if a request changes nothing, so that it is not logged.
 #[must_use]
@@ -78,15 +57,11 @@ pub fn is_question(line: &str) -> bool {
 }
 
 const STATUS: &str = "status";
-/// Request for the directory of the task data.
 const DATA: &str = "data";
-/// Request for the state of the Active Pedestal.
 const PEDESTAL: &str = "pedestal";
 
-/// Request for what the controller knows after a loss of power.
 const RESUME: &str = "resume";
 
-/// Request for the state of the couplers.
 const FIELD: &str = "io";
 
 /// The requests that are not lines of a job.
@@ -124,10 +99,7 @@ const OTHER_WORDS: [&str; 12] = [
 ];
 
 impl Request {
-    /// Read a request.
-    ///
-    /// # Errors
-    /// A message about the error.
+    /// Read a request. Errors: a message about the error.
     pub fn read(line: &str, store: &Store) -> Result<Self, String> {
         let line = line.trim().trim_start_matches("**").trim_start();
         let words = line.split_whitespace().collect::<Vec<_>>().join(" ");

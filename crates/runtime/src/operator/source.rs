@@ -28,25 +28,21 @@ pub enum Inputs {
 /// Blocks and jobs that were loaded during a run, from its log.
 #[derive(Default)]
 pub struct Texts {
-    /// Blocks, by the generation of the task data that each created.
-    blocks: Vec<(u32, Source)>,
+    blocks: Vec<(u32, Source)>, // blocks, by the generation of the task data that each created
     jobs: Vec<(u32, Source)>,
     /// Loads of the workstation controller. It also requests them in a repetition; only their verdicts are from
     /// the log.
     workstation: VecDeque<OperatorLine>,
-    /// The last tick of the log.
-    end: Tick,
+    end: Tick, // the last tick of the log
 }
 
 /// Source of the loads that the workstation controller requests; no operator can have this name.
 pub const WORKSTATION: &str = "workstation controller";
 
-/// An input from a session or a log.
 pub enum Input {
     Given(Given),
     Recorded(OperatorLine, Event),
-    /// An input of the program that runs the tick.
-    Program(String, Event),
+    Program(String, Event), // an input of the program that runs the tick
 }
 
 impl Input {
@@ -128,9 +124,7 @@ impl Input {
 
 impl Inputs {
     /// Open the source of a configuration. Operators can connect to a run on the 40 ms grid that has shared memory.
-    ///
-    /// # Errors
-    /// [`StartError::Inputs`].
+    /// Errors: [`StartError::Inputs`].
     pub fn of(config: &RunConfig, name: &RunName, observer: &mut dyn Observer) -> Result<Self, StartError> {
         if let Some(path) = &config.inputs {
             return Self::recorded(path, observer);
@@ -207,7 +201,6 @@ impl Inputs {
         texts.workstation.pop_front()?.refused
     }
 
-    /// True if the inputs are from a log that has ended, so that no further request follows.
     #[must_use]
     pub fn have_ended(&self, tick: Tick) -> bool {
         matches!(self, Self::Recorded(lines, texts) if lines.is_empty() && tick >= texts.end)

@@ -14,29 +14,19 @@ use taskdata::files::TaskData;
 
 use super::{by_hand, knowledge, written};
 
-/// Largest number of passes of a process in one request.
-pub const PASSES: u8 = 100;
+pub const PASSES: u8 = 100; // largest number of passes of a process in one request
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entry {
-    /// `^C`: stop the processes of the board; on board 0, the pulse.
-    Stop(u8),
-    /// `GO`, on board 0 `SSGO`.
-    Go(u8),
-    /// `PRIM-LEVEL` and similar: a number of passes of a process, one per tick.
-    Execute(ProcessId, u8),
-    /// `.R` on board 2.
+    Stop(u8),               // `^C`: stop the processes of the board; on board 0, the pulse
+    Go(u8),                 // `GO`, on board 0 `SSGO`
+    Execute(ProcessId, u8), // `PRIM-LEVEL` and similar: a number of passes of a process, one per tick
     RobotInit,
-    /// DB-DONE of block 903; true if the block contains it.
-    DbDone(bool),
-    /// `<= VALUE` for a variable.
-    Write(Write),
-    /// The object in the gripper, named by a person while E-move runs.
-    Name(Write),
-    /// An order to the Active Pedestal.
+    DbDone(bool), // DB-DONE of block 903; true if the block contains it
+    Write(Write), // `<= VALUE` for a variable
+    Name(Write),  // the object in the gripper, named by a person while E-move runs
     Pedestal(HandOrder),
-    /// Support that keeps the object from falling when the gripper opens.
-    Confirm(Support),
+    Confirm(Support), // support that keeps the object from falling when the gripper opens
 }
 
 /// Name of a process in requests.
@@ -100,21 +90,16 @@ fn named(word: &str) -> Result<ProcessId, String> {
 #[derive(Debug, Default)]
 pub struct Terminals {
     shown: OperatorInputs,
-    /// Processes to execute in the next ticks, one entry per tick.
-    passes: VecDeque<u16>,
-    /// Values to write in the next tick.
-    writes: [Option<Write>; WRITES],
+    passes: VecDeque<u16>, // processes to execute in the next ticks, one entry per tick
+    writes: [Option<Write>; WRITES], // values to write in the next tick
     /// The name of the held object, and the number of ticks since it was given. A variable is written while its
     /// process is stopped: E-move stops for two ticks.
     naming: Option<(Write, u8)>,
-    /// Order to the pedestal in the next tick.
-    order: Option<HandOrder>,
-    /// Statement about the object in the gripper, for the next tick.
-    confirmed: Option<Support>,
+    order: Option<HandOrder>,   // order to the pedestal in the next tick
+    confirmed: Option<Support>, // statement about the object in the gripper, for the next tick
 }
 
 impl Terminals {
-    /// The terminals as an input of the controller.
     #[must_use]
     pub const fn inputs(&self) -> &OperatorInputs {
         &self.shown
@@ -150,11 +135,8 @@ impl Terminals {
         had_some
     }
 
-    /// Execute an entry. `memory` is common memory after the last tick, which has the number `tick`; `data` are
-    /// the task data of the next one.
-    ///
-    /// # Errors
-    /// The reason of the refusal.
+    /// Execute an entry. `memory` is common memory after the last tick, which has the number `tick`; `data` are the
+    /// task data of the next one.
     pub fn enter(
         &mut self,
         entry: Entry,

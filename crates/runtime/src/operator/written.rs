@@ -11,15 +11,10 @@ use levels::emove::gripper::EmoveGripper;
 use rcs_core::name::Name16;
 use taskdata::files::TaskData;
 
-/// The value of an empty variable.
-const NONE: &str = "NONE";
-/// Grip numbers of the forms (VII.7.1).
-const GRIPS: std::ops::RangeInclusive<i32> = -99..=99;
+const NONE: &str = "NONE"; // the value of an empty variable
+const GRIPS: std::ops::RangeInclusive<i32> = -99..=99; // grip numbers of the forms (VII.7.1)
 
-/// Read `VARIABLE VALUE`, the words after `write`.
-///
-/// # Errors
-/// A message with the expected and the found text.
+/// Read `VARIABLE VALUE`, the words after `write`. Errors: a message with the expected and the found text.
 pub fn read(words: &[&str]) -> Result<Write, String> {
     let Some((name, value)) = words.split_first() else {
         return Err(format!("write VARIABLE VALUE was expected, such as write {} {NONE}", Variable::Ledger));
@@ -44,19 +39,15 @@ pub fn read(words: &[&str]) -> Result<Write, String> {
     })
 }
 
-/// Check a value for the next tick. Returns the old and the new value, as text for operator and log.
-///
-/// # Errors
-/// A message with the reason of the refusal, and the remedy.
+/// Check a value for the next tick. Returns the old and the new value, as text for operator and log. Errors: a message
+/// with the reason of the refusal, and the remedy.
 pub fn check(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     stands(write.variable.owner(), memory)?;
     check_value(write, memory, data)
 }
 
-/// Like [`check`], for a process that is stopped only after the check.
-///
-/// # Errors
-/// A message with the reason of the refusal, and the remedy.
+/// Like [`check`], for a process that is stopped only after the check. Errors: a message with the reason of the
+/// refusal, and the remedy.
 pub fn check_value(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     if let Some(object) = &write.object {
         is_in_data(write, object, data)?;
@@ -68,10 +59,8 @@ pub fn check_value(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) ->
     Ok(format!("{} was {}, is {}", write.variable, old_value(write.variable, memory), new_value(write)))
 }
 
-/// Check that a process is stopped, so that its variables or its block can be changed.
-///
-/// # Errors
-/// A message that names the request to stop it.
+/// Check that a process is stopped, so that its variables or its block can be changed. Errors: a message that names
+/// the request to stop it.
 pub fn stands(process: ProcessId, memory: &CommonMemory) -> Result<(), String> {
     if may_be_written(process, memory) {
         Ok(())

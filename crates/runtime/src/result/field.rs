@@ -12,13 +12,10 @@ use crate::field::FieldPort;
 #[derive(Clone, Debug, Serialize)]
 pub struct FieldResult {
     pub devices: Vec<FieldDevice>,
-    /// The simulated parts of the run: groups of devices, and the robot.
-    pub simulated: Vec<&'static str>,
-    /// True if the devices are real: places of parts, contacts and confirmations are not judged.
-    pub is_real: bool,
-    /// Greatest age of the inputs at a tick; `None` in simulated time.
+    pub simulated: Vec<&'static str>, // the simulated parts of the run: groups of devices, and the robot
+    pub is_real: bool, // the devices are real: places of parts, contacts and confirmations are not judged
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub age_us: Option<TickTimes>,
+    pub age_us: Option<TickTimes>, // greatest age of the inputs at a tick; `None` in simulated time
     /// Time of a tick for reading and writing the devices; `None` in simulated time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tick_us: Option<TickTimes>,
@@ -29,10 +26,8 @@ pub struct FieldDevice {
     pub name: String,
     pub exchanges: u32,
     pub failures: u32,
-    /// Number of times that its outputs were made safe until a release.
-    pub trips: u32,
-    /// True if it has confirmed that its outputs are safe at the end.
-    pub confirmed: bool,
+    pub trips: u32,      // number of times that its outputs were made safe until a release
+    pub confirmed: bool, // it has confirmed that its outputs are safe at the end
 }
 
 impl FieldResult {

@@ -25,12 +25,10 @@ use crate::{
 const REST_TICKS: u64 = 20;
 
 impl Run {
-    /// Execute an operator's event in this program, for a run without other operators: in the fast clock, or
-    /// with none configured. Runs one tick and then executes the event, which takes effect in the next tick. A
-    /// session begins with [`Event::Connected`].
-    ///
-    /// # Errors
-    /// The reason of the refusal, or that the run has ended or has another source of operators' inputs.
+    /// Execute an operator's event in this program, for a run without other operators: in the fast clock, or with none
+    /// configured. Runs one tick and then executes the event, which takes effect in the next tick. A session begins
+    /// with [`Event::Connected`]. Errors: the reason of the refusal, or that the run has ended or has another source
+    /// of operators' inputs.
     pub fn ask(&mut self, who: &str, event: Event) -> Result<String, String> {
         if !self.asked.ask(who, event) {
             return Err("the operators of this run are elsewhere".to_owned());
@@ -132,7 +130,6 @@ impl Run {
         }
     }
 
-    /// Answer an input and log it.
     fn settle(&mut self, first: Tick, input: Input, verdict: Result<String, String>) {
         self.operator.count(&input, &verdict);
         self.asked.keep(&verdict);

@@ -25,13 +25,10 @@ use crate::{
 pub struct RunOutcome {
     pub ending: Ending,
     pub result: RunResult,
-    /// All steps of the job, including actions of the workstation.
-    pub steps: Vec<BegunStep>,
-    /// File and size of the log, or the reason why it ended, as text.
-    pub log: String,
+    pub steps: Vec<BegunStep>, // all steps of the job, including actions of the workstation
+    pub log: String,           // file and size of the log, or the reason why it ended, as text
     pub slowest: String,
-    /// The operator's action before a failed job can continue.
-    pub remedy: Option<&'static str>,
+    pub remedy: Option<&'static str>, // the operator's action before a failed job can continue
 }
 
 impl RunOutcome {
@@ -170,7 +167,6 @@ impl Run {
         }
     }
 
-    /// Items in the database at the end.
     fn items(&mut self) -> Vec<ItemResult> {
         let items = match (self.closed.books_mut(), self.neighbours.data_system()) {
             (Some(books), _) => books.items(),

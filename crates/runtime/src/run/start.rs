@@ -42,10 +42,7 @@ fn first_silence_limit(config: &RunConfig) -> Option<u16> {
     Some(u16::try_from(wait).unwrap_or(u16::MAX).max(silence_limit))
 }
 
-/// Announce a run that has a name, before it uses a file of its own.
-///
-/// # Errors
-/// [`StartError::NameInUse`].
+/// Announce a run that has a name, before it uses a file of its own. Errors: [`StartError::NameInUse`].
 fn announced(config: &RunConfig) -> Result<Option<Announced>, StartError> {
     let Some(name) = config.name.clone().filter(|_| config.shared_memory) else { return Ok(None) };
     match Announced::named(name) {
@@ -84,17 +81,13 @@ fn mirror(publisher: &Publisher, observer: &mut dyn Observer) -> Option<Mirror> 
 
 impl Run {
     /// Read, check and start everything that the run needs, and wait for boards, neighbours and robot controller.
-    ///
-    /// # Errors
-    /// [`StartError`] if the run cannot begin, with all errors of the data. The robot has not moved.
+    /// Fails if the run cannot begin, with all errors of the data. The robot has not moved.
     pub fn new(config: RunConfig, observer: Box<dyn Observer>) -> Result<Self, StartError> {
         Self::start(config, None, observer)
     }
 
-    /// Like [`Run::new`], with a robot of the caller instead of the configured one.
-    ///
-    /// # Errors
-    /// The errors of [`Run::new`].
+    /// Like [`Run::new`], with a robot of the caller instead of the configured one. Errors: the errors of
+    /// [`Run::new`].
     pub fn with_robot(
         mut config: RunConfig,
         robot: Box<dyn OwnRobot>,

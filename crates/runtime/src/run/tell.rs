@@ -47,7 +47,6 @@ impl Run {
         self.show_state();
     }
 
-    /// Log the changed states of the run, which are valid from the next tick on.
     pub(super) fn show_state(&mut self) {
         let Some(log) = &mut self.log else { return };
         let tick = self.closed.tick();
@@ -169,7 +168,6 @@ impl Run {
         }
     }
 
-    /// Report viewers that the live view has disconnected.
     pub(super) fn note_viewers(&mut self, tick: Tick) {
         while let Some(why) = self.live.as_ref().and_then(Live::disconnected) {
             let event = Event::ViewerDisconnected(why);

@@ -28,32 +28,26 @@ use crate::live::{
     silence::Silence,
 };
 
-/// Sleep of an idle thread: a quarter of a tick.
-const IDLE: Duration = Duration::from_millis(10);
+const IDLE: Duration = Duration::from_millis(10); // sleep of an idle thread: a quarter of a tick
 /// Interval between pings. The answer limits the age of the client's next messages.
 const PING: Duration = Duration::from_millis(500);
 /// Interval between pings of a client that operates the run. Its answers show that the operator is present.
 const PING_OPERATOR: Duration = ALIVE;
 /// Greatest age of a request. The sender of an older one no longer waits, or its connection is stalled.
 const REQUEST_AGE: Duration = Duration::from_secs(2);
-/// Time limit for closing a connection.
-const CLOSING_LIMIT: Duration = Duration::from_millis(500);
+const CLOSING_LIMIT: Duration = Duration::from_millis(500); // time limit for closing a connection
 /// Time after a disconnection during which the client can still read its reason. The feed meanwhile continues.
 const LATE_READER: Duration = Duration::from_secs(30);
 /// Interval between reports of the number of dropped messages.
 const COUNT: Duration = Duration::from_secs(5);
-/// Greatest number of a client's messages read before messages are written.
-const READS: usize = 16;
-/// Greatest number of items written before messages of the client are read.
-const WRITES: usize = 512;
+const READS: usize = 16; // greatest number of a client's messages read before messages are written
+const WRITES: usize = 512; // greatest number of items written before messages of the client are read
 
 #[derive(Debug)]
 enum End {
     Gone,
-    /// The client has not read for this time.
-    Silent(Duration),
-    /// The server closes the session with a code and a reason.
-    Told(CloseCode, String),
+    Silent(Duration),        // the client has not read for this time
+    Told(CloseCode, String), // the server closes the session with a code and a reason
 }
 
 impl From<io::Error> for End {
@@ -74,7 +68,6 @@ impl From<Error> for End {
     }
 }
 
-/// A client after its handshake.
 pub struct Client {
     socket: WebSocket<Connection>,
     feed: Feed,
@@ -82,22 +75,17 @@ pub struct Client {
     outgoing: Outgoing,
     session: Session,
     access: Option<Access>,
-    /// The operator session with the run; `None` before the first request.
-    operator: Option<Operator>,
+    operator: Option<Operator>, // the operator session with the run; `None` before the first request
     name: Name,
     /// Time without reading after which a client is disconnected, and the present time without reading.
     patience: Duration,
     silence: Silence,
-    /// Receives the reason when the server disconnects the client.
-    notices: Option<Notices>,
-    /// Time at which the session began.
-    began: Instant,
+    notices: Option<Notices>, // receives the reason when the server disconnects the client
+    began: Instant,           // time at which the session began
     /// Number and time of the last ping. The number is the time of the ping, ms since the session began.
     ping: (u64, Instant),
-    /// Number of the last answered ping, and the time of its answer.
-    pong: (u64, Instant),
-    /// Number of dropped messages last sent to the client, and the time of sending.
-    dropped: (u64, Instant),
+    pong: (u64, Instant), // number of the last answered ping, and the time of its answer
+    dropped: (u64, Instant), // number of dropped messages last sent to the client, and the time of sending
 }
 
 impl Client {
@@ -308,7 +296,6 @@ impl Client {
         taken(self.socket.write(message))
     }
 
-    /// Flushes. Returns true if everything is written.
     fn flush(&mut self) -> Result<bool, End> {
         taken(self.socket.flush())
     }

@@ -8,10 +8,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The stream of a client.
 #[derive(Debug)]
 pub enum Stream {
-    /// A program of this machine.
     Local(TcpStream),
     /// The gateway, which connects for a person on the network. It belongs to the user of this process.
     Gateway(UnixStream),
@@ -69,10 +67,8 @@ impl Write for Stream {
 pub struct Connection {
     stream: Stream,
     until: Option<Instant>,
-    /// True if the last write was blocked.
-    is_full: bool,
-    /// True if a write has succeeded after a blocked one, which shows that the client has read.
-    has_drained: bool,
+    is_full: bool,     // the last write was blocked
+    has_drained: bool, // a write has succeeded after a blocked one, which shows that the client has read
 }
 
 impl Connection {

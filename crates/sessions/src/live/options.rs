@@ -21,20 +21,13 @@ pub type Notices = Sender<String>;
 
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Origins of web pages that may connect, in addition to Foxglove's.
-    pub origins: Vec<Origin>,
-    /// The web page that connects to this server, if any.
-    pub page: Option<String>,
-    /// The first message to clients.
-    pub info: ServerInfo,
-    /// Time without reading after which a client is disconnected.
-    pub patience: Duration,
-    /// The velocity knob, if any.
-    pub knob: Option<Knob>,
-    /// Access for requests; `None` if the run accepts none.
-    pub access: Option<Access>,
-    /// Receives the reasons of disconnects, if set.
-    pub notices: Option<Notices>,
+    pub origins: Vec<Origin>, // origins of web pages that may connect, in addition to Foxglove's
+    pub page: Option<String>, // the web page that connects to this server, if any
+    pub info: ServerInfo,     // the first message to clients
+    pub patience: Duration,   // time without reading after which a client is disconnected
+    pub knob: Option<Knob>,   // the velocity knob, if any
+    pub access: Option<Access>, // access for requests; `None` if the run accepts none
+    pub notices: Option<Notices>, // receives the reasons of disconnects, if set
 }
 
 impl Options {

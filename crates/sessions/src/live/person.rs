@@ -7,18 +7,14 @@ use tungstenite::http::{HeaderMap, StatusCode};
 
 use crate::{live::http::Refusal, operator::Name};
 
-/// Header with the name of the person.
-pub const NAME: &str = "rcs-person";
-/// Header with the role of the person.
-pub const ROLE: &str = "rcs-role";
+pub const NAME: &str = "rcs-person"; // header with the name of the person
+pub const ROLE: &str = "rcs-role"; // header with the role of the person
 
 /// What a person may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Watch the run.
     Viewer,
-    /// Watch the run, and send requests if the run accepts them.
-    Operator,
+    Operator, // watch the run, and send requests if the run accepts them
 }
 
 impl FromStr for Role {
@@ -33,7 +29,6 @@ impl FromStr for Role {
     }
 }
 
-/// A person, as the gateway names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Person {
     pub name: Name,
@@ -41,10 +36,8 @@ pub struct Person {
 }
 
 impl Person {
-    /// Reads the headers of a gateway.
-    ///
-    /// # Errors
-    /// A refusal if a header is missing, repeated or invalid: a connection without a role gets no rights.
+    /// Reads the headers of a gateway. Errors: a refusal if a header is missing, repeated or invalid: a connection
+    /// without a role gets no rights.
     pub fn of(headers: &HeaderMap) -> Result<Self, Refusal> {
         let person = header(headers, NAME).zip(header(headers, ROLE));
         let person = person.map(|(name, role)| Self { name, role });

@@ -34,23 +34,17 @@ use crate::live::{
 
 pub const PORT: u16 = 8765;
 pub const CLIENTS: usize = 16;
-/// Greatest length of a client's message, bytes.
-pub const MESSAGE: usize = 64 * 1024;
+pub const MESSAGE: usize = 64 * 1024; // greatest length of a client's message, bytes
 const HANDSHAKE: Duration = Duration::from_secs(3);
-/// Time at the end during which clients can still read.
-const LAST: Duration = Duration::from_secs(2);
-/// Pause after a connection that could not be accepted.
-const AGAIN: Duration = Duration::from_millis(100);
+const LAST: Duration = Duration::from_secs(2); // time at the end during which clients can still read
+const AGAIN: Duration = Duration::from_millis(100); // pause after a connection that could not be accepted
 
 /// A bound port on 127.0.0.1. Clients that connect wait for the start of a [`Server`].
 #[derive(Debug)]
 pub struct Port(TcpListener);
 
 impl Port {
-    /// Binds a port; 0 chooses a free one.
-    ///
-    /// # Errors
-    /// The error of the operating system if the port is not available.
+    /// Binds a port; 0 chooses a free one. Errors: the error of the operating system if the port is not available.
     pub fn take(port: u16) -> io::Result<Self> {
         TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map(Self)
     }
@@ -67,10 +61,8 @@ pub struct Server {
 }
 
 impl Server {
-    /// Serves the clients that connect to a [`Port`]. The threads inherit the priority of the caller.
-    ///
-    /// # Errors
-    /// The error of the operating system if the thread cannot start.
+    /// Serves the clients that connect to a [`Port`]. The threads inherit the priority of the caller. Errors: the
+    /// error of the operating system if the thread cannot start.
     pub fn start(port: Port, mut options: Options, feed: Feed) -> io::Result<Self> {
         let info = &mut options.info;
         info.capabilities.push("time");
@@ -91,10 +83,8 @@ impl Server {
         Ok(Self { address, admission, stop, thread: Some(thread), gateway: None })
     }
 
-    /// Also serves the persons for whom a gateway of this user connects at a Unix socket.
-    ///
-    /// # Errors
-    /// The errors of [`Acceptor::start`].
+    /// Also serves the persons for whom a gateway of this user connects at a Unix socket. Errors: the errors of
+    /// [`Acceptor::start`].
     pub fn admit_gateway(&mut self, path: &Path) -> io::Result<()> {
         let admission = self.admission.clone();
         self.gateway = Some(Acceptor::start(path, "live gateway", move |stream| admission.enter(stream))?);
@@ -153,8 +143,7 @@ struct Admission {
     options: Arc<Options>,
     feed: Feed,
     open: Arc<AtomicUsize>,
-    /// Number of viewers so far, without requests for the page.
-    viewers: Arc<AtomicU64>,
+    viewers: Arc<AtomicU64>, // number of viewers so far, without requests for the page
 }
 
 impl Admission {
@@ -180,7 +169,6 @@ impl Admission {
     }
 }
 
-/// Counts an open connection until it is dropped.
 struct Open(Arc<AtomicUsize>);
 
 impl Drop for Open {

@@ -13,12 +13,9 @@ use crate::live::{
     protocol::{self, Parameter, Request, ServiceCall, StatusLevel, Subscription},
 };
 
-/// Greatest number of subscriptions of a client.
-pub const SUBSCRIPTIONS: usize = 512;
-/// Number of invalid messages after which a client is disconnected.
-pub const MISTAKES: u32 = 32;
-/// The parameter for the velocity knob, 0 to 1000.
-pub const VELOCITY: &str = "/operator/velocity";
+pub const SUBSCRIPTIONS: usize = 512; // greatest number of subscriptions of a client
+pub const MISTAKES: u32 = 32; // number of invalid messages after which a client is disconnected
+pub const VELOCITY: &str = "/operator/velocity"; // the parameter for the velocity knob, 0 to 1000
 /// The parameter for the token. Its value shows only whether the token was accepted.
 pub const TOKEN: &str = "/operator/token";
 /// The parameter for this client's access to the run: [`ACCESS_WORDS`].
@@ -30,18 +27,13 @@ pub const NAME: &str = "/viewer/name";
 /// The parameter for the seconds of the past with which a subscription begins, 0 to [`PAST_S`].
 pub const PAST: &str = "/viewer/past";
 const FULL: u16 = 1000;
-/// Number of characters of a client's message that the answer quotes.
-const QUOTED: usize = 60;
-/// Answer to a request if the run accepts none.
+const QUOTED: usize = 60; // number of characters of a client's message that the answer quotes
 const NO_REQUESTS: &str =
     "this run accepts no requests of viewers: it needs --clock real and an operator (docs/operator.md)";
-/// Answer to a request of a person who is a viewer.
 const ONLY_VIEWER: &str =
     "the gateway has admitted this person as a viewer: rcs-gateway person sets the role";
-/// Answer to a request without a valid token.
 const NO_TOKEN: &str = "the token that the run has printed was expected";
 
-/// An action that results from a client's message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Action {
     Text(String),
@@ -49,7 +41,6 @@ pub enum Action {
     /// Send the messages of a channel, beginning with the newest one, or with the past.
     Subscribe {
         channel: u16,
-        /// The client's number of the subscription.
         subscription: u32,
         past_s: u64,
     },
@@ -59,42 +50,25 @@ pub enum Action {
     },
     /// Send a request to the run, and pass its answer to [`Session::answered`].
     Ask {
-        /// The line for the operator's socket.
         line: String,
-        /// The client's request to which the answer belongs.
         reply: Reply,
     },
-    /// Disconnect the client, with this reason.
-    Close(String),
+    Close(String), // disconnect the client, with this reason
 }
 
-/// A client's request that waits for an answer of the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
-    Call {
-        service: u32,
-        /// The client's number of the call.
-        call: u32,
-    },
-    Knob {
-        velocity: u16,
-        /// The client's identifier of the request.
-        id: Option<String>,
-    },
+    Call { service: u32, call: u32 },
+    Knob { velocity: u16, id: Option<String> },
 }
 
-/// Whether the requests of a client are sent to the run.
 #[derive(Clone, Debug, Default)]
 pub enum Requests {
-    /// The run accepts none.
     #[default]
-    Closed,
-    /// The gateway has admitted a person who may only watch.
-    OnlyViewer,
-    /// A request must contain the token.
-    Token(Token),
-    /// The gateway has admitted a person who may operate.
-    Granted,
+    Closed, // the run accepts none
+    OnlyViewer,   // the gateway has admitted a person who may only watch
+    Token(Token), // a request must contain the token
+    Granted,      // the gateway has admitted a person who may operate
 }
 
 impl Requests {
@@ -117,29 +91,21 @@ impl Requests {
 
 #[derive(Clone, Debug, Default)]
 pub struct Rights {
-    /// The velocity knob; `None` for a log.
     pub knob: Option<Knob>,
     pub requests: Requests,
-    /// The name under which the run knows the client as an operator.
-    pub name: String,
+    pub name: String, // the name under which the run knows the client as an operator
 }
 
-/// The state of one client's session.
 #[derive(Debug, Default)]
 pub struct Session {
     rights: Rights,
-    /// Channels by the client's subscription numbers.
-    subscriptions: BTreeMap<u32, u16>,
-    /// True if the client has set the token as a parameter.
-    has_token: bool,
-    /// Seconds of the past with which a subscription begins.
-    past_s: u64,
-    /// The last sent knob position; `None` if the client has not subscribed to it.
-    knob: Option<u16>,
+    subscriptions: BTreeMap<u32, u16>, // channels by the client's subscription numbers
+    has_token: bool,                   // the client has set the token as a parameter
+    past_s: u64,                       // seconds of the past with which a subscription begins
+    knob: Option<u16>, // the last sent knob position; `None` if the client has not subscribed to it
     mistakes: u32,
 }
 
-/// The decoded payload of a service call.
 #[derive(Deserialize)]
 struct Payload {
     #[serde(default)]
@@ -230,7 +196,6 @@ impl Session {
         (seen != now).then(|| self.parameters(&[VELOCITY.to_owned()], None))
     }
 
-    /// The message with the named parameters; an empty list means all.
     fn parameters(&self, names: &[String], id: Option<&str>) -> String {
         let knob = self.rights.knob.as_ref().map(|knob| (VELOCITY, json!(knob.get())));
         let accepted = if self.has_token { "accepted" } else { "" };
@@ -348,7 +313,6 @@ impl Session {
         }
     }
 
-    /// Reports an invalid message to the client.
     fn wrong(&mut self, why: &str) -> Vec<Action> {
         let status = Action::Text(protocol::status(StatusLevel::Error, why, None));
         self.counted(why).map_or_else(|| vec![status], |close| vec![close])

@@ -19,12 +19,9 @@ pub const HOME: WireFrame =
     WireFrame { tool: [0, -7145, -1483], wrist_to_tool: [0, -2123, -2119], tool_to_finger: [3000, 0, 0] };
 /// Tolerance of HOME's values, and of two frames that must agree (IV.3.3 steps 11 and 13).
 pub const TOLERANCE: i32 = 4;
-/// A robot that has moved at most this far is at rest, 0.01 in.
-const STANDS: i32 = 4;
-/// Ticks for which the robot must be at rest: 2 s.
-const STANDS_FOR: u64 = 50;
-/// A robot that has moved this far has moved, 0.01 in.
-const MOVED: i32 = 10;
+const STANDS: i32 = 4; // a robot that has moved at most this far is at rest, 0.01 in
+const STANDS_FOR: u64 = 50; // ticks for which the robot must be at rest: 2 s
+const MOVED: i32 = 10; // a robot that has moved this far has moved, 0.01 in
 
 /// The stages of the robot controller's start-up (IV.3.3), in order.
 pub const STAGES: [&str; 11] = [
@@ -46,64 +43,42 @@ pub struct Sight<'a> {
     pub cell: &'a Cell,
     /// The session with the run; `None` on a console without `--operate`.
     pub operating: Option<&'a Operating>,
-    /// The state at the beginning of the step.
-    pub begun: Begun,
+    pub begun: Begun, // the state at the beginning of the step
 }
 
-/// The state when a step began, or when its requests were sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Begun {
     pub tick: Tick,
-    /// Tool point from the resolvers, 0.01 in.
-    pub tool: Option<[i32; 3]>,
-    /// Number of the last request before those of the step; `None` before Enter.
-    pub asked: Option<u32>,
+    pub tool: Option<[i32; 3]>, // tool point from the resolvers, 0.01 in
+    pub asked: Option<u32>,     // number of the last request before those of the step; `None` before Enter
 }
 
-/// A condition that is true, false, or unknown to the console.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
-    /// The robot controller has reached this stage of its start-up, or a later one.
-    Reached(&'static str),
-    /// The robot controller is at this stage.
-    At(&'static str),
+    Reached(&'static str), // the robot controller has reached this stage of its start-up, or a later one
+    At(&'static str),      // the robot controller is at this stage
     NoPressure,
     EStopsOut,
-    /// All six axes are marked with an asterisk.
-    Aligned,
+    Aligned, // all six axes are marked with an asterisk
     LinkRuns,
     Resolvers,
-    /// The resolvers show HOME to within [`TOLERANCE`].
-    AtHome,
-    /// The frame that Prim receives and the frame that it outputs agree to within [`TOLERANCE`].
-    FramesAgree,
-    /// The robot has been at rest since the step began, for at least two seconds.
-    Stands,
-    /// The robot has moved since the step began.
-    Moved,
+    AtHome,      // the resolvers show HOME to within [`TOLERANCE`]
+    FramesAgree, // the frame that Prim receives and the frame that it outputs agree to within [`TOLERANCE`]
+    Stands,      // the robot has been at rest since the step began, for at least two seconds
+    Moved,       // the robot has moved since the step began
     Have(&'static [ProcessId], &'static str),
     Says(ProcessId, &'static str),
     Run(&'static [ProcessId]),
     Held(&'static [ProcessId]),
-    /// The velocity knob is not at zero (true), or at zero (false).
-    KnobUp(bool),
-    /// A coordinate switch is on (true), or none is (false).
-    FrameOn(bool),
-    /// The hand of the pedestal is calibrated.
+    KnobUp(bool),  // the velocity knob is not at zero (true), or at zero (false)
+    FrameOn(bool), // a coordinate switch is on (true), or none is (false)
     HandCalibrated,
-    /// The rotary table is calibrated and at this angle, 0.1 degree.
-    TableAt(i32),
-    /// The Data System has this connection state.
+    TableAt(i32), // the rotary table is calibrated and at this angle, 0.1 degree
     DataSystem(Connection),
-    /// The pedestal is a separate system, and answers.
-    PedestalAnswers,
-    /// The last request to the vision system was answered.
-    VisionAnswers,
-    /// The job waits for the operator.
-    JobWaits,
-    /// The run's status line names this source of commands.
-    Commands(&'static str),
-    /// The run has accepted the requests of the step.
+    PedestalAnswers,        // the pedestal is a separate system, and answers
+    VisionAnswers,          // the last request to the vision system was answered
+    JobWaits,               // the job waits for the operator
+    Commands(&'static str), // the run's status line names this source of commands
     Taken,
 }
 
@@ -213,13 +188,11 @@ fn place(stage: &str) -> Option<usize> {
     STAGES.iter().position(|known| *known == stage)
 }
 
-/// The rows of a frame in the form of the terminal.
 #[must_use]
 pub const fn rows(frame: &WireFrame) -> [[i32; 3]; 3] {
     [frame.tool, frame.wrist_to_tool, frame.tool_to_finger]
 }
 
-/// The largest difference between the values of two frames.
 #[must_use]
 pub fn largest(frame: &WireFrame, other: &WireFrame) -> i32 {
     let (frame, other) = (rows(frame).concat(), rows(other).concat());

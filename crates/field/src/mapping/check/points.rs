@@ -21,8 +21,7 @@ use crate::scale::{Format, Line};
 
 /// Ages after which a point can be stale, ms: from a tick on.
 const STALE_MS: RangeInclusive<u16> = 40..=10_000;
-/// The input that the three grippers share (III.3.7).
-const SHARED: &str = "grip.potentiometer";
+const SHARED: &str = "grip.potentiometer"; // the input that the three grippers share (III.3.7)
 
 pub(super) fn input(
     path: &str,
@@ -175,7 +174,6 @@ pub(super) fn output(
     })
 }
 
-/// How the value of a point is stored.
 struct Shape<'f> {
     is_bit: bool,
     format: Option<Format>,
@@ -183,7 +181,6 @@ struct Shape<'f> {
     invert: bool,
 }
 
-/// Whether a point is read or written.
 #[derive(Clone, Copy, PartialEq)]
 enum Direction {
     In,

@@ -35,9 +35,8 @@ pub(super) struct Intervention {
 #[derive(Clone, Debug, PartialEq)]
 pub enum WaitReason {
     Commanded,
-    Asked, // by the operator
-    /// The run has started with the knowledge of an earlier one.
-    Resumed,
+    Asked,   // by the operator
+    Resumed, // the run has started with the knowledge of an earlier one
     Failed(JobFailure),
 }
 
@@ -61,10 +60,8 @@ impl fmt::Display for WaitReason {
 /// A place in a job.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PlaceInJob {
-    /// The present line, from 1; 0 for the PAUSE before the first.
-    pub line: u32,
-    /// False if the present line has not begun.
-    pub is_begun: bool,
+    pub line: u32,      // the present line, from 1; 0 for the PAUSE before the first
+    pub is_begun: bool, // false if the present line has not begun
     /// Lines `** after` before the present one whose actions have not started, one bit each, the nearest first.
     pub delayed: u16,
 }
@@ -135,8 +132,7 @@ impl Hwsc {
         self
     }
 
-    /// Sets whether an operator is connected. When the operator disconnects, a job that waits because of a
-    /// failed line ends with that failure.
+    /// When the operator disconnects, a job that waits because of a failed line ends with that failure.
     pub fn attend(&mut self, is_there: bool) {
         self.intervention.attended = is_there;
         if let (false, State::Waits { failure, .. }) = (is_there, &mut self.intervention.state)

@@ -86,7 +86,6 @@ impl Hwsc {
         }
     }
 
-    /// Records the unconfirmed goals of a finished command.
     pub(super) fn confirm(&mut self, unconfirmed: Unconfirmed) {
         if let Some(step) = self.begun_steps.get_mut(self.entry).filter(|step| step.is_command) {
             step.unconfirmed = unconfirmed;

@@ -5,7 +5,6 @@ use interfaces::point::Station;
 use super::{DeviceError, Devices, Machine, Programs};
 use crate::{CellDescription, WorkstationAction, vise::Jaws};
 
-/// An output that a device follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Output {
     Vise(Jaws),
@@ -17,7 +16,6 @@ pub(super) enum Output {
     Tool,
 }
 
-/// A sensor of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Sensor {
     Vise(Jaws),
@@ -33,8 +31,7 @@ pub(super) enum Sensor {
     Tray(String, u16),
     Air,
     Safety,
-    /// An input of the controller's own records.
-    None,
+    None, // an input of the controller's own records
 }
 
 impl Devices {
@@ -127,7 +124,6 @@ fn tray_at(name: &str, point: &Station<'_>, cell: &CellDescription) -> Result<Se
     })
 }
 
-/// Checks the names of all programs.
 pub(super) fn check(programs: &Programs, cell: &CellDescription) -> Result<(), DeviceError> {
     let vise = programs
         .vise
