@@ -121,8 +121,7 @@ fn assert_shown_by_console(what: &str, outcome: &Outcome, failure: &FailureResul
     assert!(band[2].starts_with(" next: "), "{what}: {band:?}");
 }
 
-/// Assert that all programs name the same first failure: the last line of the run, `info`, `why`, the page, and the
-/// console. An injected fault is no part of it.
+/// Assert that all programs name the same first failure, which is not an injected fault.
 pub fn assert_same_account(what: &str, outcome: &Outcome) {
     let answer = |arguments: &[&str]| -> Value {
         serde_json::from_str(&ask(outcome, arguments)).unwrap_or_else(|error| panic!("{what}: {error}"))

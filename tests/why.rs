@@ -1,5 +1,4 @@
-//! `rcs-log why` finds the first cause, and reports the commands before it with rows and sensed values, and the path
-//! of the failure up the ladder.
+//! `rcs-log why` finds the first cause, the commands before it with rows and sensed values, and the way up the ladder.
 
 #![expect(clippy::print_stdout, reason = "its output is for readers")]
 

@@ -132,8 +132,7 @@ fn common(mode: &str, keys: &Keys, access_control: &Value) -> Result<Config, zen
     Ok(config)
 }
 
-/// Configuration of a gateway: it listens at an endpoint, and connects to a router if there is one. Fails if Zenoh
-/// does not accept it.
+/// A gateway listens at an endpoint, and connects to a router if there is one.
 pub fn gateway(
     cell: &Name,
     endpoint: Endpoint,
@@ -178,8 +177,7 @@ fn listen(config: &mut Config, endpoint: Endpoint) -> Result<(), zenoh::Error> {
     config.insert_json5("listen/endpoints", &json!([limited]).to_string())
 }
 
-/// Configuration of a router between gateways and monitors. Each cell writes its own status, and monitors read all.
-/// Fails if Zenoh does not accept it.
+/// A router between gateways and monitors. Each cell writes its own status, and monitors read all.
 pub fn router(
     endpoint: Endpoint,
     keys: &Keys,
@@ -202,8 +200,7 @@ pub fn router(
     Ok(config)
 }
 
-/// Configuration of a monitor: a client of one router or gateway, or a peer of several gateways, which keeps trying.
-/// Fails if Zenoh does not accept it.
+/// A monitor: a client of one router or gateway, or a peer of several gateways, which keeps trying.
 pub fn monitor(endpoints: &[Endpoint], keys: &Keys) -> Result<Config, zenoh::Error> {
     let is_client = endpoints.len() == 1;
     let mode = if is_client { "client" } else { "peer" };
@@ -218,8 +215,7 @@ pub fn monitor(endpoints: &[Endpoint], keys: &Keys) -> Result<Config, zenoh::Err
     Ok(config)
 }
 
-/// Configuration of a neighbour, which accepts samples from the gateway of its cell only. Fails if Zenoh does not
-/// accept it.
+/// A neighbour accepts samples from the gateway of its cell only.
 pub fn neighbour(cell: &Name, endpoint: Endpoint, role: Role, keys: &Keys) -> Result<Config, zenoh::Error> {
     let mut rules = Rules::default();
     rules.claim(&CellKeys::of(cell.as_str()), role, &keys.name, Flow::Egress);

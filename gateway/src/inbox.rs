@@ -31,8 +31,7 @@ pub struct Inbox {
 }
 
 impl Inbox {
-    /// An inbox for samples, of which only the latest counts (`is_state`), or for lines, which wait in order. Fails if
-    /// the system has no descriptor left.
+    /// For samples, of which only the latest counts (`is_state`), or for lines, which wait in order.
     pub fn new(is_state: bool) -> io::Result<Self> {
         let wake = eventfd(0, EventfdFlags::CLOEXEC | EventfdFlags::NONBLOCK)?;
         Ok(Self { is_state, contents: Mutex::default(), wake, is_stopped: AtomicBool::new(false) })

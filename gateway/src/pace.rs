@@ -34,8 +34,7 @@ impl Pace {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A request of a certificate: how long it has to wait before it reaches the run; `None` if too many wait. After
-    /// `Some`, call [`Pace::answered`].
+    /// Wait before a request may reach the run; `None` if too many wait. After `Some`, call [`Pace::answered`].
     #[must_use]
     pub fn ask(&self, name: &Name, now: Instant) -> Option<Duration> {
         let mut all = self.lock();

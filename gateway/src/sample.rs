@@ -63,8 +63,7 @@ impl State {
         bytes
     }
 
-    /// Read a sample. Returns the reason of the end, if the claim ends. Errors: [`SampleError`]; the state may have
-    /// changed in part.
+    /// Returns the reason of the end, if the claim ends. After an error the state may have changed in part.
     pub fn decode(&mut self, mut bytes: &[u8]) -> Result<Option<String>, SampleError> {
         let mut end = None;
         while !bytes.is_empty() {

@@ -85,7 +85,6 @@ pub struct Cli {
     pub faults: Option<PathBuf>,
 }
 
-/// Target of an emulated robot: the host's address, and the robot's options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EgmTarget(pub EgmOptions);
 

@@ -74,7 +74,6 @@ pub struct Station {
 }
 
 impl Station {
-    /// Reads mapping and cell, and listens at the addresses of the mapping.
     pub fn new(cli: &Cli, mapping: &Path) -> Result<Self, String> {
         let path = FIELDS.find(mapping, &cli.data).map_err(|error| error.to_string())?;
         let mapping = runtime::field::read(&path).map_err(|error| refused_mapping(&error))?;

@@ -16,7 +16,6 @@ use serde::Serialize;
 
 use crate::Error;
 
-/// A tick with its decoded records.
 pub struct Moment {
     pub tick: Tick,
     pub gap: u64, // number of missing ticks before it

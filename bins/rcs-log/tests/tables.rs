@@ -23,7 +23,6 @@ fn log(path: &Path, attachments: Vec<Attachment>) {
     recorder.finish(End::default()).expect("the log ends");
 }
 
-/// The action of E-move's row in the explanation of tick 1, and the standard error.
 fn explained(path: &Path) -> (String, String) {
     let mut why = Command::new(env!("CARGO_BIN_EXE_rcs-log"));
     let output = why.args(["why", "--json", "--tick", "1"]).arg(path).output().expect("the program starts");
@@ -33,7 +32,6 @@ fn explained(path: &Path) -> (String, String) {
     (answer["levels"][EMOVE]["action"].as_str().unwrap_or_default().to_owned(), stderr)
 }
 
-/// The attached tables, with another action in E-move's first row.
 fn other_tables(mut file: Attachment) -> Attachment {
     let mut text = String::new();
     zstd::Decoder::new(file.data.as_slice()).unwrap().read_to_string(&mut text).unwrap();

@@ -406,7 +406,6 @@ pub struct SendArguments {
     pub name: sessions::operator::Name,
 }
 
-/// A time in seconds, also with a fraction.
 fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse::<f64>().ok().filter(|seconds| (0.0..=86_400.0).contains(seconds));
     seconds

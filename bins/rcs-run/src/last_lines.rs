@@ -21,7 +21,6 @@ fn viewers() -> Option<PathBuf> {
     [here, sources].into_iter().find(|directory| directory.join(RERUN).is_file())
 }
 
-/// The lines. A run without a log has no lines about opening one.
 pub struct LastLines<'a>(pub &'a RunOutcome);
 
 impl fmt::Display for LastLines<'_> {

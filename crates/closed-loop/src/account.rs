@@ -245,7 +245,6 @@ impl Alarms {
         self.failures.iter().filter(|failure| failure.tick > self.worked || !failure.kind.passes())
     }
 
-    /// The account of these failures; `None` without a failure.
     #[must_use]
     pub fn account(&self) -> Option<Account> {
         Account::of(self.failures().cloned())

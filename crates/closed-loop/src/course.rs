@@ -13,7 +13,6 @@ use rcs_core::{Plain, digest::Digest, tick::Tick};
 
 use crate::failure::Watch;
 
-/// A ladder of control processes: [`Present`](crate::Present), one over several boards, or one of a test.
 pub trait Levels<Data: ?Sized> {
     type Error;
 

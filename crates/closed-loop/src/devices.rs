@@ -48,7 +48,6 @@ pub fn device_line(action: &Action) -> Option<String> {
     })
 }
 
-/// The group of devices that an action of a job needs.
 #[must_use]
 pub const fn group(action: &Action) -> Option<Group> {
     match action {
@@ -85,7 +84,6 @@ pub fn refusal(mapping: &Mapping, action: &Action) -> Option<String> {
     }
 }
 
-/// The numbers that the lines of a mapping give to programs and tools.
 #[must_use]
 pub fn programs(mapping: &Mapping) -> Programs {
     let mut programs = Programs::default();
@@ -142,7 +140,6 @@ impl StationLines {
         group(action).is_some_and(|group| self.mapping.presence(group) != Presence::Simulated)
     }
 
-    /// Begins a line.
     pub fn begin(&mut self, action: &Action) -> Result<(), String> {
         if let Some(refusal) = refusal(&self.mapping, action) {
             return Err(refusal);

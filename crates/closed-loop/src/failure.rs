@@ -33,7 +33,6 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// A failure without a decision table.
     #[must_use]
     pub fn outside(tick: Tick, kind: Kind, process: &str, text: String) -> Self {
         Self { tick, kind, process: process.to_owned(), table: None, row: None, text, stopped: false }
@@ -53,7 +52,6 @@ mod number {
     }
 }
 
-/// The first tick of a report that is still present.
 #[derive(Clone, Copy)]
 struct Cause {
     tick: Tick,
@@ -64,8 +62,7 @@ struct Cause {
     detail: Detail,
 }
 
-/// Observes every tick. It stores, per process, the tick in which the present report began and common memory of that
-/// tick.
+/// Stores, per process, the tick in which the present report began and common memory of that tick.
 #[derive(Clone)]
 pub struct Watch {
     last: [Fault; PROCESSES],

@@ -50,7 +50,6 @@ pub enum FieldError {
     NotReady { device: String },
 }
 
-/// The couplers of a run.
 #[derive(Clone, Debug)]
 pub enum Field {
     Simulated(SimulatedField), // emulated couplers, in simulated time
@@ -111,7 +110,6 @@ impl SimulatedField {
         Ok(field)
     }
 
-    /// With the devices of a cell behind the couplers.
     #[must_use]
     pub fn with_devices(mut self, devices: Devices, cell: &Cell) -> Self {
         devices.sense(cell, &mut self.sensed);
@@ -135,7 +133,6 @@ impl SimulatedField {
         }
     }
 
-    /// What the devices report to their operator, since the last call.
     pub fn messages(&mut self) -> Vec<String> {
         self.devices.as_mut().map(|devices| devices.messages()).unwrap_or_default()
     }

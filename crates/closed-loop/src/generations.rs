@@ -26,7 +26,6 @@ impl Generations {
         Self { first, reloads, number: 0, inserted: 0, waiting: VecDeque::new() }
     }
 
-    /// The task data of a generation; those of generation 0 without such a reload.
     fn store(&self, number: u32) -> &Store {
         self.reload(number).map_or(&self.first, |reload| &reload.store)
     }

@@ -66,7 +66,6 @@ pub use self::{
     world::{Turn, World},
 };
 
-/// A run between two ticks. A copy continues from the same state.
 #[derive(Clone)]
 pub struct ClosedLoop<L = Present, W: World = SimulatedWorkstation> {
     course: Course<L>,
@@ -104,14 +103,12 @@ impl<L, W: World> ClosedLoop<L, W> {
         }
     }
 
-    /// Use an external Data System, whose status is given.
     #[must_use]
     pub fn with_data_system_elsewhere(self) -> Self {
         Self { books: None, ..self }
     }
 
-    /// Continue after `tick` as a controller that has lost its power and starts with what it knew: its buffers, its
-    /// last command, and the generation of the task data. The world continues.
+    /// Continues like a controller that lost its power after `tick`, with what it knew. The world continues.
     pub fn resume(&mut self, tick: Tick, memory: &CommonMemory, hws: &HwsCommand, generation: u32) {
         self.course.start_after(tick, memory);
         self.gate = Gate::resumed(hws);
@@ -238,7 +235,6 @@ impl<L, W: World> ClosedLoop<L, W> {
         self.course.memory()
     }
 
-    /// The control processes and the results of their ticks.
     #[must_use]
     pub const fn course(&self) -> &Course<L> {
         &self.course

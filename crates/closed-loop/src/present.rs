@@ -41,8 +41,7 @@ impl Present {
         self.processes.clear();
     }
 
-    /// Switch the controller on: all processes start without state and adopt the buffers in common memory
-    /// ([`ClosedLoop::resume`](crate::ClosedLoop::resume)).
+    /// All processes start without state and adopt the buffers in common memory (see `ClosedLoop::resume`).
     pub fn switch_on(&mut self) {
         self.processes = ProcessId::ALL.to_vec();
         for process in ProcessId::ALL.iter().copied() {

@@ -162,8 +162,7 @@ pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<Workstation
         Action::Tray { location, object, offset } => WorkstationAction::Place {
             part: object.to_string(),
             unit: location.name.to_string(),
-            // The task data contain this sector, so it is not negative; a number that does not fit is beyond every
-            // cell.
+            // The task data contain the sector, so it is not negative; one that does not fit is beyond every cell.
             sector: location.sector.map_or(0, |sector| u16::try_from(sector).unwrap_or(u16::MAX)),
             placement: offset.as_ref().map_or(Placement::Random, placement),
         },
@@ -196,7 +195,6 @@ pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<Workstation
     }])
 }
 
-/// Converts the hundredths of a job to inches and degrees.
 fn placement(offset: &Offset) -> Placement {
     let hundredths = |value: i32| f64::from(value) / 100.0;
     Placement::At { x: hundredths(offset.x), y: hundredths(offset.y), angle: hundredths(offset.angle) }
@@ -224,7 +222,6 @@ impl Workstation for SimulatedWorkstation {
         self.cell.workstation_busy() || self.is_executed_by_devices()
     }
 
-    /// The [[line]] of a mapping has a time limit of its own.
     fn has_own_time_limit(&self) -> bool {
         self.is_executed_by_devices()
     }
@@ -234,7 +231,6 @@ impl Workstation for SimulatedWorkstation {
         self.state.fault.clone().or_else(|| failure.map(ToString::to_string))
     }
 
-    /// The emergency as text, from the loss of pressure to FAULT RESET.
     fn emergency(&self) -> Option<String> {
         let faulted = self.cell.t3().stage() == Stage::Faulted;
         let droop = self.cell.droop().filter(|droop| faulted && droop.cause.is_emergency());
@@ -271,7 +267,6 @@ mod tests {
             Self { workstation: SimulatedWorkstation::new(cell), store }
         }
 
-        /// Begin a line, and run the cell until the line has ended.
         fn play(&mut self, line: &str) -> Result<Vec<DeviceInputs>, String> {
             let source = Source { name: "try.job".into(), text: line.into() };
             let (job, _) = Job::from_source(source, &self.store).map_err(|report| report.to_string())?;

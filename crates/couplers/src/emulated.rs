@@ -53,7 +53,6 @@ pub struct Emulated {
     previous: Answer,
 }
 
-/// An answer that is sent again by [`CouplerFault::Stale`].
 #[derive(Clone, Debug)]
 struct Answer {
     bytes: [u8; modbus::MOST_FRAME_BYTES],
@@ -99,7 +98,6 @@ impl Emulated {
         Some(Self::new(plan.kind, plan.unit, inputs, outputs)).filter(|_| plan.kind == Kind::Bk9000)
     }
 
-    /// Puts an image of the inputs into the registers of a plan.
     pub fn show(&mut self, plan: &Plan, image: &InWords) {
         let first = *plan.kind.facts().inputs.start();
         for span in &plan.reads {
@@ -125,7 +123,6 @@ impl Emulated {
         image
     }
 
-    /// The registers of the inputs, which the devices write.
     pub const fn inputs_mut(&mut self) -> &mut [u16; WORDS] {
         &mut self.inputs
     }
@@ -282,7 +279,6 @@ impl Emulated {
     }
 }
 
-/// Bit of process data at the address of a coil or discrete input.
 fn bit_place(address: u16) -> (u16, u16) {
     (address / 16, 1 << (address % 16))
 }

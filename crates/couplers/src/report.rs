@@ -109,7 +109,6 @@ pub enum Refusal {
     Lengths(Lengths),
 }
 
-/// The end of a sentence about the device.
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

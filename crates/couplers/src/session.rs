@@ -28,8 +28,7 @@ use crate::{
 
 /// A device that returns later than this is tripped, also if its watchdog has more time: it may have none.
 const MOST_GAP_MS: u64 = 500;
-/// Time without new orders after which the outputs become safe: three ticks, less the jitter of the exchanges. The
-/// third image is missing in the first exchange after it is due.
+/// Three ticks without orders, less the jitter of the exchanges: the third image is missing when it is next due.
 const MOST_SILENCE: u64 = 116 * MS;
 /// First and longest pause before a new connection; with it, inputs are valid ten ticks after a cut at the latest.
 const PAUSES: (u64, u64) = (20 * MS, 320 * MS);
@@ -49,7 +48,6 @@ enum Phase {
     Open,
 }
 
-/// The counter of a device's program, and the time of its last change.
 #[derive(Clone, Copy, Debug)]
 struct Alive {
     value: u16,

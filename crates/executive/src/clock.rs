@@ -157,7 +157,6 @@ impl<T: Time> Grid<T> {
     }
 }
 
-/// The rate of ticks.
 #[derive(Debug)]
 pub enum Clock {
     Fast,                  // one tick immediately after the other

@@ -30,8 +30,7 @@ pub const FIELD_PRIORITY: u8 = PRIORITY - 1; // priority of the threads of coupl
 
 /// Size of the stack that is touched beforehand; a tick needs a fraction of it.
 const STACK_BYTES: usize = 512 * 1024;
-/// While a program holds this file open, the cores use no idle state with a longer wake-up time than the written one,
-/// microseconds.
+/// While this file is open, the cores use no idle state with a longer wake-up time than the written one, us.
 const IDLE_STATES: &str = "/dev/cpu_dma_latency";
 
 #[derive(Clone, Debug, PartialEq, Eq)]

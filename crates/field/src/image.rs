@@ -19,7 +19,6 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// The connection of a point that is stale after so many ms.
     fn connection(&self, stale_ms: u16) -> GroupHealth {
         match self.age_ms {
             Some(age) if age <= u32::from(stale_ms) => {
@@ -142,8 +141,7 @@ impl Mapping {
         }
     }
 
-    /// True if the safety circuit is open. A late input says nothing: its device trips if it stays away. A mapping
-    /// without `safety.ok` has no safety circuit.
+    /// A late input does not open the circuit: its device trips if it stays away. No `safety.ok`, no circuit.
     #[must_use]
     pub fn is_safety_open(&self, devices: &[Seen]) -> bool {
         let point = self.inputs.iter().find(|point| point.name == SAFETY);
@@ -189,7 +187,6 @@ impl InPoint {
         input.write(inputs, value);
     }
 
-    /// The counts of a raw value.
     fn value(&self, input: Input, raw: i64, gripper: u8) -> i64 {
         let range = input.range();
         let value = self.line_of(gripper).map_or(raw, |line| line.counts(raw, self.ends()));
@@ -241,7 +238,6 @@ impl Slot {
         }
     }
 
-    /// Puts the nearest value that the format has into an image.
     pub(crate) fn put(&self, image: &mut [u16], value: i64) {
         let range = self.format.range();
         let value = value.clamp(*range.start(), *range.end());

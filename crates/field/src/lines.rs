@@ -24,7 +24,6 @@ use crate::{image::Seen, mapping::Mapping};
 pub const SETTLE_TICKS: u64 = 1000 / TICK_MS;
 const TICKS_PER_S: u64 = 1000 / TICK_MS;
 
-/// How the devices execute a line: the entry `[[line]]` of a mapping.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sequence {
     pub line: String,          // the words of the line without `**`, separated by one space
@@ -41,14 +40,12 @@ pub struct Sequence {
     pub within_s: u16,
 }
 
-/// An input of the workstation, and the value that it must have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Condition {
     pub input: usize, // index in the inputs of the mapping
     pub value: i64,
 }
 
-/// An output of the workstation, and its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setting {
     pub output: usize, // index in the outputs of the mapping
@@ -110,7 +107,6 @@ impl Lines {
         self.failure.as_ref()
     }
 
-    /// What the operator is asked to do now.
     #[must_use]
     pub fn asks<'m>(&self, mapping: &'m Mapping) -> Option<&'m str> {
         let entry = self.current.and_then(|current| mapping.lines.get(current.entry))?;

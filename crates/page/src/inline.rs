@@ -126,8 +126,7 @@ pub fn document(title: &str, content: Content<'_>) -> String {
         .replace("</body>", &body)
 }
 
-/// Joins modules into one script that starts with `start`. Errors: a sentence that names the module and the line that
-/// is not in the expected form.
+/// Joins modules into one script that starts with `start`. Errors: the module and its unexpected line.
 pub fn bundle(modules: &[(&str, &str)], start: &str) -> Result<String, String> {
     let known: BTreeMap<&str, &str> = modules.iter().map(|(path, text)| (file_name(path), *text)).collect();
     if known.len() != modules.len() {
@@ -141,7 +140,6 @@ pub fn bundle(modules: &[(&str, &str)], start: &str) -> Result<String, String> {
     }
 }
 
-/// Append a module after those that it imports.
 fn append(
     known: &BTreeMap<&str, &str>,
     name: &str,
@@ -224,7 +222,6 @@ impl Module {
     }
 }
 
-/// The names of an import, and the file name of the module.
 fn import(statement: &str) -> Option<(String, String)> {
     let (names, rest) = statement.strip_prefix("import {")?.split_once('}')?;
     let path = rest.trim().strip_prefix("from '")?.strip_suffix("';")?;
@@ -236,7 +233,6 @@ fn file_name(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }
 
-/// Name of the function in the script that returns the exports of a module.
 fn getter(file: &str) -> String {
     let stem = file.strip_suffix(".js").unwrap_or(file);
     format!("module_{}", stem.replace('-', "_"))

@@ -52,8 +52,7 @@ pub fn tables() -> Value {
     Ladder::processes().iter().map(process).collect()
 }
 
-/// The action of a person before the same command can succeed, by the reasons of a log; by those of this program if the
-/// log has none. `None` if PAUSE and the same command may be enough.
+/// The remedy by the reasons of a log, or of this program. `None` if PAUSE and the same command may be enough.
 #[must_use]
 pub fn remedy(log: &Log, reason: &str) -> Option<String> {
     let reasons = of_log(log, REASONS).unwrap_or_else(reasons);
@@ -100,7 +99,6 @@ fn action(action: &ActionText, rows: &[Row]) -> Option<Value> {
     (!naming.is_empty()).then_some(named)
 }
 
-/// A step with its code in the header of the process.
 fn step(variant: &VariantSchema) -> Value {
     json!({ "name": variant.name, "doc": prose([variant.doc]), "code": variant.code })
 }

@@ -48,7 +48,6 @@ messages! {
     }
 }
 
-/// The data whose change causes a new message.
 #[derive(Clone, Copy, PartialEq)]
 struct Key {
     command: Option<u32>,

@@ -16,7 +16,6 @@ use crate::{
     explanation::{self, TABLES},
 };
 
-/// Where the tables of an explanation are from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
     Same, // the log has the tables of this program

@@ -337,7 +337,6 @@ impl Views {
         due.into_iter().try_for_each(|(_, channel)| output.put(channel.id, tick, &channel.last))
     }
 
-    /// Copy the messages of the previous log to the next log of a run.
     pub fn continue_run(&mut self, ended: &mut Self) {
         for (channel, before) in self.0.iter_mut().zip(&mut ended.0) {
             channel.last = std::mem::take(&mut before.last);

@@ -13,7 +13,6 @@ use record::{
 };
 use serde_json::Value;
 
-/// A log of one tick: it has all channels.
 fn log() -> Vec<u8> {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("run.mcap");

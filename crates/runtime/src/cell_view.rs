@@ -24,8 +24,7 @@ pub struct View {
 }
 
 impl View {
-    /// Fill the view with the cell after `tick`. `warning` is the last warning on the screen of the robot controller.
-    /// `sank` is true if the arm has lost its pressure in this tick.
+    /// `warning`: the last on the robot controller's screen. `sank`: the arm has lost its pressure in this tick.
     pub fn look(
         &mut self,
         tick: Tick,
@@ -144,8 +143,7 @@ fn shown(parts: &[PartState]) -> [PartView; PARTS] {
     views
 }
 
-/// Lateness of the ticks. The statistics over all ticks take too long for every tick, so they are updated once
-/// per second.
+/// Statistics over all ticks take too long for every tick, so they are updated once per second.
 fn lateness(before: LatenessView, tick: Tick, pace: &Pace) -> LatenessView {
     let last = pace.last_late().as_secs_f64() * 1e6;
     match pace.late() {

@@ -80,8 +80,7 @@ pub struct RunConfig {
     pub outbox: PathBuf,
     /// Stop after this number of ticks, unless the job ends before.
     pub ticks: Option<u64>,
-    /// After a command that ends with an error, send PAUSE and the same command again, at most this number of
-    /// times per line of the job.
+    /// Greatest number of times, per line of the job, that PAUSE and the same command follow an error.
     pub retry: u32,
     pub operator: OperatorAccess,
     /// A log whose operator inputs are replayed, each in its tick. Operators cannot connect then.
@@ -158,7 +157,6 @@ impl RunConfig {
         self.field.as_ref().is_some_and(|field| !field.is_simulated)
     }
 
-    /// The job; `None` if another process commands.
     #[must_use]
     pub fn played(&self) -> Option<&str> {
         (self.stand_alone || !self.outside.contains(&Role::Workstation)).then_some(self.job.as_str())
@@ -189,7 +187,6 @@ impl FieldConfig {
         Self { mapping: mapping.into(), is_simulated: true }
     }
 
-    /// Couplers over TCP.
     #[must_use]
     pub fn tcp(mapping: impl Into<PathBuf>) -> Self {
         Self { mapping: mapping.into(), is_simulated: false }

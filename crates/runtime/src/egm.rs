@@ -89,8 +89,7 @@ impl EgmPort {
         })
     }
 
-    /// Wait until the robot follows, until the time limit or an interruption. If it does not follow, the run
-    /// begins, and fails with a reason that names the robot.
+    /// Waits until the robot follows. If it does not in time, the run begins, and fails with a reason that names it.
     pub fn gather(&mut self, config: &RunConfig, observer: &mut dyn Observer) {
         let started = Instant::now();
         let limit = Duration::from_secs(config.wait.into());
@@ -131,8 +130,7 @@ impl EgmPort {
         }
     }
 
-    /// After the controller's tick: pass the host's bytes to the DEPC function, or hold the robot in place.
-    /// `exact` is Prim's commanded tool frame, as T3I receives it and exactly.
+    /// Passes the host's bytes on, or holds the robot. `exact`: Prim's tool frame, as T3I receives it and exactly.
     pub fn send(&mut self, tx: &LinkBytes, hold: bool, exact: Option<(WireFrame, Frame)>) {
         if let Some((wire, exact)) = exact {
             self.bridge.offer(&wire, &exact);
@@ -157,7 +155,6 @@ impl EgmPort {
         self.bridge.trouble().map(|trouble| self.with_refusals(trouble))
     }
 
-    /// A trouble, with the refused datagrams if there are any.
     fn with_refusals(&self, trouble: &str) -> String {
         match self.line.refusals() {
             refusals if refusals.count() == 0 => trouble.to_owned(),
@@ -170,7 +167,6 @@ impl EgmPort {
         self.lag_ms
     }
 
-    /// The refused datagrams since the start.
     #[must_use]
     pub fn refusals(&self) -> Refusals {
         self.line.refusals()

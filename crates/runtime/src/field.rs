@@ -83,7 +83,6 @@ pub fn check_job(mapping: &Mapping, job: &Job) -> Result<(), StartError> {
     if refused.is_empty() { Ok(()) } else { Err(StartError::LinesWithoutDevices(refused)) }
 }
 
-/// The parts of a run that are simulated: groups of devices, and the robot.
 #[must_use]
 pub fn simulated(config: &RunConfig, mapping: &Mapping) -> Vec<&'static str> {
     let is_emulated = !config.has_real_devices();
@@ -97,12 +96,10 @@ pub fn simulated(config: &RunConfig, mapping: &Mapping) -> Vec<&'static str> {
     robot.then_some("robot").into_iter().chain(groups).collect()
 }
 
-/// True if the words of a group pass through the couplers.
 fn carries(mapping: &Mapping, group: Group) -> bool {
     mapping.presence(group) != Presence::Simulated
 }
 
-/// Messages of a run with couplers at its start.
 #[must_use]
 pub fn introduction(config: &RunConfig, mapping: &Mapping) -> Vec<String> {
     let (through, beside): (Vec<Group>, Vec<Group>) =

@@ -45,8 +45,7 @@ pub struct Words {
 }
 
 impl Beginning {
-    /// The page of the run, which connects to the server that sent it. Other users of the machine can read it,
-    /// so it contains neither the command line nor the paths of the run.
+    /// The page connects to the server that sent it. Other users can read it: no command line, no paths.
     fn page(&self, job: &str, mut run: BTreeMap<String, String>) -> String {
         run.insert(TICK_0.to_owned(), self.epoch.of(Tick::BEFORE_START).to_string());
         let added = [
@@ -85,14 +84,12 @@ impl Live {
         }))
     }
 
-    /// The tap through which the log passes its messages to the view.
     #[must_use]
     pub fn tap(&self) -> Box<dyn Tap> {
         self.feed.tap()
     }
 
-    /// Serve viewers. They can send requests if operators can connect to the run. Fails if the system provides no
-    /// random numbers, or no thread.
+    /// Clients can send requests if operators can connect. Fails without random numbers or a thread.
     pub fn start(
         &mut self,
         config: &RunConfig,

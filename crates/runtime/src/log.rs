@@ -63,7 +63,6 @@ pub struct Log {
     touches: Vec<Touch>, // the contacts of the last tick
 }
 
-/// The last request to vision, its answer, and the camera picture.
 struct Vision {
     camera: Camera,
     request: VisionRequest,
@@ -152,8 +151,7 @@ impl Log {
         self.beginning.take()
     }
 
-    /// Log the cell that the controller reads in `tick`, with the [`FRAMES`] of a robot with EGM. Call it
-    /// before [`Log::tick`].
+    /// Logs the cell that the controller reads, with the [`FRAMES`] of EGM. Call it before [`Log::tick`].
     pub fn cell(&mut self, tick: Tick, cell: &Cell, frames: Option<[Pose; 2]>) {
         let mut places = vec![Transform::IDENTITY; self.links.len()];
         let mut put = |name: &str, place: Transform| {
@@ -209,8 +207,7 @@ impl Log {
         (self.faults, self.kinds) = (counts, kinds);
     }
 
-    /// Log that the task data are of another generation from `tick` on, with the blocks of `source`. Call it
-    /// before [`Log::tick`] of that tick.
+    /// Logs a new generation of task data from `tick` on, with its blocks. Call it before [`Log::tick`] of that tick.
     pub fn reload(&mut self, tick: Tick, generation: u32, source: &Source) {
         for file in Attachment::reload(generation, std::slice::from_ref(source)) {
             self.recorder.attach(tick, file);
@@ -218,8 +215,7 @@ impl Log {
         self.event(tick, &Event::Loaded { generation, name: source.name.clone() });
     }
 
-    /// Log that this job replaces the rest of the previous one from `tick` on. Call it before [`Log::tick`] of
-    /// that tick.
+    /// Logs a job that replaces the rest of the previous one from `tick` on. Call it before [`Log::tick`].
     pub fn played(&mut self, tick: Tick, number: u32, job: &Job) {
         let source = Source { name: format!("{}.{EXTENSION}", job.name), text: job.source().text.clone() };
         self.recorder.attach(tick, Attachment::played(number, &source));
@@ -233,8 +229,7 @@ impl Log {
         self.recorder.attach(tick, Attachment { name, media_type, data });
     }
 
-    /// Set the times of the tick. Call it before [`Log::tick`] of the same tick, but not in fast clock: equal
-    /// runs must have equal logs.
+    /// Call it before [`Log::tick`] of the same tick, but not in fast clock: equal runs must have equal logs.
     pub const fn timing(&mut self, controller_ns: u64, skipped: u64) {
         self.recorder.timing(Timing { controller_ns, skipped });
     }
@@ -267,8 +262,7 @@ fn transform(link: &plant::LinkPose) -> Transform {
     Transform { position: link.position, rotation: link.rotation }
 }
 
-/// A contact for viewers, rounded so that small vibrations cause no new message: position to 0.01 in, depth to
-/// 0.001 in.
+/// Rounded to 0.01 in, depth to 0.001 in, so that small vibrations cause no new message.
 fn touch(contact: &Contact, collides: bool) -> Touch {
     let Contact { mover, obstacle, depth, at, .. } = contact;
     let rounded = |inches: f64, steps: f64| (inches * steps).round() / steps;

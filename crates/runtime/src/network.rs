@@ -22,8 +22,7 @@ pub struct Network {
 }
 
 impl Network {
-    /// Listen at the address of a configuration, if it names one. Fails if the options contradict each other, or the
-    /// address cannot be used.
+    /// Fails if the options contradict each other, or the address cannot be used.
     pub fn start(
         config: &RunConfig,
         endpoints: &[&Endpoint],
@@ -57,13 +56,11 @@ impl Network {
         }
     }
 
-    /// Events of operators' connections since the last call.
     pub fn events(&self) -> impl Iterator<Item = NetEvent> {
         self.operators.iter().flat_map(|(_, events)| events.try_iter())
     }
 }
 
-/// Check that the options of the network are consistent.
 fn check(config: &RunConfig) -> Result<(), StartError> {
     let for_operators = config.operator == OperatorAccess::Network;
     if config.outside.contains(&Role::Operator) {

@@ -41,8 +41,7 @@ impl Pace {
         }
     }
 
-    /// Run a tick every 40 ms, or `speed` ticks in that time, from now on. The threads of log and progress must
-    /// already run: they keep their ordinary priority.
+    /// Runs a tick every 40 ms, or `speed` ticks. Start log and progress threads first: they keep ordinary priority.
     pub fn ask_for_real_time(&mut self, core: Option<usize>, speed: u8) -> Event {
         let granted = realtime::acquire(core);
         let verdict = format!("{}; {}", granted.verdict, Machine::look());
@@ -136,13 +135,11 @@ impl Pace {
     }
 }
 
-/// Times of all parts of a tick.
 #[must_use]
 pub fn times(stage_times: &StageTimes) -> BTreeMap<String, TickTimes> {
     Stage::all().map(|part| (part.to_string(), stage_times.summary(part).into())).collect()
 }
 
-/// The processes with the longest times, as one line.
 #[must_use]
 pub fn slowest(stage_times: &StageTimes) -> String {
     let mut processes: Vec<_> = Stage::all()

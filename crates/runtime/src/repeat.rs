@@ -56,8 +56,7 @@ pub enum RepeatError {
     Write { path: PathBuf, source: io::Error },
 }
 
-/// Write the files of a log into an empty directory, and return the configuration to run them, without a log and
-/// shared memory. Fails if the log does not contain the whole run.
+/// Writes a log's files into an empty directory. Fails if the log does not contain the whole run.
 pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
     if let Some(part) = log.part() {
         return Err(RepeatError::Part(part));
@@ -122,7 +121,6 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
     })
 }
 
-/// Metadata for the log of a fork.
 #[must_use]
 pub fn fork_remarks(tick: u64, changes: &[String]) -> BTreeMap<String, String> {
     let entries = [(FORKED_AFTER, tick.to_string()), (CHANGES, changes.join("; "))];

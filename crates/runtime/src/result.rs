@@ -38,7 +38,6 @@ pub struct CommandResult {
     pub ticks: u64, // ticks from sending the command to detecting its end
 }
 
-/// A failed command that was repeated.
 #[derive(Clone, Debug, Serialize)]
 pub struct RetryResult {
     pub tick: u64, // tick in which the failure was detected
@@ -53,7 +52,6 @@ impl From<&Retry> for RetryResult {
     }
 }
 
-/// A line without the prefix of a command.
 pub fn bare(line: &str) -> String {
     line.trim_start_matches("==").trim_start().to_owned()
 }
@@ -71,8 +69,7 @@ pub struct FailureResult {
 }
 
 impl FailureResult {
-    /// What went wrong in the run of a log, as the run has attached it at its end: `Some(None)` for a successful run,
-    /// `None` for a killed one.
+    /// As attached at the end of the run: `Some(None)` for a successful run, `None` for a killed one.
     #[must_use]
     pub fn of_log(log: &Log) -> Option<Option<Self>> {
         if let Some(file) = log.attachment(explanation::FAILURE)
@@ -142,8 +139,7 @@ pub struct RunResult {
     pub simulated: Option<&'static str>,
     pub parts: Vec<PartState>,
     pub data_base: Vec<ItemResult>, // items of the MBD in the Data System
-    /// The judge of confirmations: number of commands of all levels that were reported as finished, and the
-    /// false reports.
+    /// Number of commands of all levels that were reported as finished, and the false reports.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<TruthResult>,
     pub contacts: Vec<Collision>, // prohibited contacts

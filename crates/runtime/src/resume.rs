@@ -121,8 +121,7 @@ impl Resumed {
         PlaceInJob { line, is_begun: begun, delayed }
     }
 
-    /// The simulated cell, as it was saved. Errors: [`StartError::ResumedCell`] if it is of another description or
-    /// version.
+    /// As saved. Errors: [`StartError::ResumedCell`] if it is of another description or version.
     pub fn cell(&self, description: &CellDescription) -> Result<Cell, StartError> {
         let path = journal::cell_beside(&self.path);
         let failed = |error: RestoreError| StartError::ResumedCell { path, why: error.to_string() };

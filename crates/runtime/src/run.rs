@@ -1,6 +1,4 @@
-//! A run, from the first tick to the result.
-//!
-//! Between two ticks the run logs the cell of the next tick and warms up the caches for it.
+//! A run, from the first tick to the result. It logs and warms up between two ticks.
 
 mod end;
 mod operate;
@@ -54,11 +52,9 @@ use crate::{
     views::Viewed,
 };
 
-/// Ticks for which the cell is simulated after the controller has stopped: two seconds, in which the arm comes to rest
-/// and loosely held parts fall.
+/// Ticks that the cell is simulated after the controller has stopped, so that arm and loose parts come to rest: 2 s.
 const SETTLING: usize = 50;
 
-/// A run that has been set up.
 pub struct Run {
     pub(crate) config: RunConfig,
     observer: Box<dyn Observer>,
@@ -111,7 +107,6 @@ impl Run {
         self.live.as_ref().and_then(Live::address)
     }
 
-    /// Run to the end, and return the outcome.
     #[must_use]
     pub fn complete(mut self) -> RunOutcome {
         while self.step() {}
@@ -134,7 +129,6 @@ impl Run {
         self.closed.tick()
     }
 
-    /// The simulated cell, for changes by a person in it between two ticks.
     pub const fn cell_mut(&mut self) -> &mut Cell {
         &mut self.closed.workstation.cell
     }
@@ -197,7 +191,6 @@ impl Run {
         self.runner.stage_times_mut().begin();
     }
 
-    /// The external inputs of the next tick.
     fn given(&self, robot: Option<RobotInputs>) -> Given {
         let mut joystick = self.operator.at_the_box();
         joystick.velocity = self.pace.knob(joystick.velocity);
@@ -325,8 +318,7 @@ impl Run {
         self.robot.moved(|| acknowledged(&levels.state()))
     }
 
-    /// Handle the loss of a board: the robot receives no more frames and the valves keep their state, while the
-    /// simulation of the cell continues.
+    /// The robot gets no more frames and the valves keep their state, while the cell continues.
     fn lost(&mut self, lost: &Lost) -> Failure {
         for tick in (lost.tick.0..).take(SETTLING).map(Tick) {
             let moved = self.moved();
@@ -344,7 +336,6 @@ impl Run {
         }
     }
 
-    /// Log the reload that is valid from the next tick on.
     pub(crate) fn log_reload(&mut self) {
         let (tick, generations) = (self.closed.tick().next(), self.closed.generations());
         let number = generations.number();

@@ -188,15 +188,13 @@ impl Setup {
     }
 }
 
-/// The couplers of a run before its first tick.
 pub enum Couplers {
     Simulated(SimulatedField),
     Tcp(FieldPort), // couplers over TCP, which may not be ready yet
 }
 
 impl Couplers {
-    /// Wait until all devices are ready. Returns the port of couplers over TCP, too. Errors: the errors of
-    /// [`FieldPort::gather`].
+    /// Returns the port of couplers over TCP, too.
     pub fn gather(
         self,
         config: &RunConfig,
@@ -223,9 +221,8 @@ pub struct TaskFiles {
 }
 
 impl TaskFiles {
-    /// Read and check task data and job. Without a job there are no steps: another process commands. Task data with
-    /// errors are used too: [`Store::faults`]. If `is_lenient`, a job with errors is omitted. Errors: [`StartError`],
-    /// with all errors of the job.
+    /// Task data with errors are used too: [`Store::faults`]. Without a job another process commands. If `is_lenient`,
+    /// a job with errors is omitted. Errors: all of the job.
     pub fn load(data: &Path, job: Option<&str>, is_lenient: bool) -> Result<Self, StartError> {
         if !files::is_directory(data) {
             return Err(StartError::NoData(data.to_owned()));
@@ -258,9 +255,8 @@ pub struct CellFile {
 }
 
 impl CellFile {
-    /// Read the description, and check that task data, job and description describe the same cell. An error of a form
-    /// of the task data is added to [`Store::faults`]. If `is_lenient`, errors of entries of the cell are tolerated.
-    /// Errors: [`StartError`], with all errors.
+    /// Checks that task data, job and description describe the same cell. Errors of a form are added to
+    /// [`Store::faults`]. If `is_lenient`, errors of entries of the cell are tolerated.
     pub fn load(data: &Path, task: &mut TaskFiles, is_lenient: bool) -> Result<Self, StartError> {
         let TaskFiles { store, job, job_path, in_data, in_job, .. } = task;
         let path = data.join(CELL);

@@ -46,8 +46,7 @@ impl Ending {
         }
     }
 
-    /// The ending with the verdicts on the cell. A job with an error in the cell has failed, and that error may
-    /// be the cause of a failed job.
+    /// A job with an error in the cell has failed, and that error may be the cause of a failed job.
     fn checked(self, verdicts: Vec<Failure>) -> Self {
         match self {
             Self::Failed(account) => Self::Failed(account.with(verdicts)),
@@ -93,7 +92,6 @@ impl Run {
         self.standing().filter(|_| commanding).map_or(ending, Ending::from)
     }
 
-    /// The emergency or lost link that prevents the robot from moving at the end.
     fn standing(&self) -> Option<Failure> {
         if let Some(what) = self.closed.workstation.emergency() {
             return self.stopped(&what);
@@ -122,7 +120,6 @@ impl Run {
         self.warning.as_ref().filter(explains).cloned()
     }
 
-    /// The emergency that has stopped the robot, and the state of the arm.
     fn stopped(&self, what: &str) -> Option<Failure> {
         let Emergency { tick, droop } = self.closed.workstation.last_emergency()?;
         let text = format!("{what}; the arm {}", droop.end());
@@ -130,8 +127,7 @@ impl Run {
         Some(Failure { stopped: true, ..Failure::outside(*tick, kind, "T3", text) })
     }
 
-    /// The cause of the job's failure: the reason of the process that reports it, or the observation of the
-    /// workstation controller, and the events that explain them.
+    /// The reason of the process that reports it, or the workstation controller's, and the events that explain it.
     pub(super) fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Ending {
         let reported = || self.closed.course().watch().failure(Ladder::processes());
         let found = match failure {

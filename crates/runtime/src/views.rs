@@ -25,7 +25,6 @@ use crate::{
     operator::{Operator, is_moved_by_hand},
 };
 
-/// The sources of the states.
 pub struct Around<'a> {
     pub tick: Tick,
     pub memory: &'a CommonMemory,
@@ -144,7 +143,6 @@ pub fn commander(neighbours: &Neighbours, operator: &Operator, memory: &CommonMe
     }
 }
 
-/// The published console of the robot controller as a state of the log.
 #[must_use]
 pub fn controller_state(view: &ControllerView) -> Controller {
     let lamps = view.lamps;

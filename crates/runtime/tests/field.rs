@@ -64,7 +64,6 @@ fn cut(devices: &[&str], at: u64, ticks: u64) -> (RunOutcome, Codes) {
     (outcome, codes)
 }
 
-/// The shipped mapping after a change.
 fn mapping(change: impl FnOnce(String) -> String) -> (tempfile::TempDir, FieldConfig) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("changed.toml");

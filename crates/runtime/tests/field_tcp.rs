@@ -61,7 +61,6 @@ impl Couplers {
         self.directory.path().join("run.mcap")
     }
 
-    /// Put the inputs of a cell at rest into the couplers.
     fn sense(&self) {
         let description = CellDescription::load(&Path::new(DATA).join("cell.toml")).unwrap();
         let inputs = Cell::new(&description, 1).unwrap().inputs();

@@ -31,7 +31,6 @@ const STRING: Channel<'static> = Channel {
     schema: b"string data",
 };
 
-/// A server with one channel, number 1.
 fn serve(options: Options) -> (Server, Box<dyn Tap>) {
     let feed = Feed::default();
     let mut tap = feed.tap();
@@ -69,7 +68,6 @@ fn try_connect(
     }
 }
 
-/// A client that has read the server's facts and the list of channels.
 fn connect(address: SocketAddr) -> WebSocket<TcpStream> {
     let mut socket = try_connect(address, None, "foxglove.sdk.v1").unwrap();
     assert_eq!(text(&mut socket)["op"], "serverInfo");

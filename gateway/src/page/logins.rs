@@ -60,8 +60,7 @@ impl Logins {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Logs a person in. The oldest login of a person with too many ends, or the oldest of all. Fails if the system
-    /// has no random bytes.
+    /// The oldest login of a person with too many ends, or the oldest of all. Fails without random bytes.
     pub fn open(&self, person: Person, now: Instant) -> Result<Arc<Login>, getrandom::Error> {
         let (is_over, open) = (AtomicBool::new(false), AtomicUsize::new(0));
         let login = Arc::new(Login { id: random_digits()?, person, until: now + VALIDITY, is_over, open });

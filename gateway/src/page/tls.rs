@@ -25,8 +25,7 @@ use crate::{error::Error, keys::Keys};
 /// Bytes that the system may keep for a client that reads slowly. More would only make the page late.
 const KEPT: usize = 128 * 1024;
 
-/// The configuration with the certificate of a cell. Errors: [`Error::Tls`] if the certificate or the key cannot be
-/// used.
+/// With the certificate of a cell. Fails if the certificate or the key cannot be used.
 pub fn config(keys: &Keys) -> Result<Arc<ServerConfig>, Error> {
     let failed = |reason: String| Error::Tls { certificate: keys.certificate.clone(), reason };
     let chain = CertificateDer::pem_file_iter(&keys.certificate).and_then(Iterator::collect);
@@ -57,8 +56,7 @@ impl Tls {
         Ok(Self { socket, session, is_ended: false, sent: 0 })
     }
 
-    /// Sends what waits and receives what has arrived, without waiting. Errors: errors of the system, and a violation
-    /// of TLS.
+    /// Sends what waits and receives what has arrived, without waiting. Fails after a violation of TLS.
     pub fn turn(&mut self) -> io::Result<()> {
         self.flush()?;
         while !self.is_ended && self.session.wants_read() {
@@ -146,8 +144,7 @@ impl Tls {
         }
     }
 
-    /// Sends the last bytes and the end, and waits until the client has closed the connection, at most until a time.
-    /// Errors: as [`Tls::receive_until`].
+    /// Sends the last bytes and the end, and waits at most until a time for the client to close.
     pub fn finish(mut self, bytes: &[u8], until: Instant) -> io::Result<()> {
         self.send(bytes)?;
         self.session.send_close_notify();

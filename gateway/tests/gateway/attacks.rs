@@ -180,8 +180,7 @@ fn no_certificate_gets_beyond_its_role() {
     assert_eq!(Role::ALL.len(), 5, "a new role needs an attacker");
 }
 
-/// A neighbour listens to nobody but the gateway of its cell: another certificate of the same authority in its place is
-/// not asked.
+/// The certificate of another server of the same authority is not accepted.
 #[test]
 fn a_neighbour_refuses_a_gateway_with_another_name() {
     let shop = Shop::new(&["hwsc-1", "other@127.0.0.1"]);

@@ -74,8 +74,7 @@ fn clients_that_send_garbage_do_not_delay_an_honest_one() {
     assert!(needed < Duration::from_secs(1), "{needed:?}");
 }
 
-/// The run keeps a refused connection for a second in one of eight places. A client that is refused and tries again
-/// without a pause would fill them.
+/// A client that tries again without a pause would fill the eight places of the run for refused connections.
 #[test]
 fn refused_client_that_hammers_keeps_no_other_client_out() {
     let shop = Shop::new(&["eye"]);

@@ -96,8 +96,7 @@ impl Operator {
     }
 }
 
-/// The stick is held by keep-alives of the operator: without them the motion ends after 250 ms, also through a gateway,
-/// which sends none of its own.
+/// Without keep-alives of the operator the motion ends after 250 ms; a gateway sends none of its own.
 #[test]
 fn stick_through_a_gateway_is_released_without_keep_alives() {
     let shop = Shop::new(&["op-1"]);

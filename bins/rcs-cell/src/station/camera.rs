@@ -1,5 +1,4 @@
-//! The camera of a station, as the neighbour `vision` of one run after the other: it takes pictures of the station's
-//! own cell, and does not use the pictures that a run sends.
+//! The camera of a station, as the neighbour `vision` of its runs. It pictures the station's own cell only.
 
 use std::{
     sync::{

@@ -93,7 +93,6 @@ pub struct Band {
     pub is_recorded: bool,  // true for a log, whose state is not the present state of a robot
 }
 
-/// The data that determine the state.
 struct Scene<'a> {
     model: &'a Model,
     source: &'a dyn Source,
@@ -341,7 +340,6 @@ impl Scene<'_> {
         format!("{look}{remedy}")
     }
 
-    /// The facts, the most important first.
     fn facts(&self) -> Vec<String> {
         let external = &self.picture.external;
         let mut facts = Vec::new();

@@ -232,7 +232,6 @@ fn controller_lines(controller: &Controller) -> Vec<Text> {
     lines
 }
 
-/// The line of the job, and the last step that was begun.
 fn progress(job: &JobState) -> String {
     match (job.lines, job.text.as_str()) {
         (_, "") => "job: nothing has begun yet".to_owned(),

@@ -31,12 +31,10 @@ pub trait Source {
 
     fn cell(&self, tick: u64) -> Cell;
 
-    /// The description of the cell, if the source contains it.
     fn cell_text(&self) -> Option<&str> {
         None
     }
 
-    /// The blocks of the task data, if the source contains them.
     fn blocks(&self) -> Option<&[Blocks]> {
         None
     }
@@ -81,7 +79,6 @@ pub struct RecordedCell {
 }
 
 impl Cell {
-    /// Progress of the job, if the source has it.
     #[must_use]
     pub fn job(&self) -> Option<JobState> {
         match self {
@@ -118,7 +115,6 @@ impl Cell {
         }
     }
 
-    /// The simulated robot controller, if the source has it.
     #[must_use]
     pub fn controller(&self) -> Option<Controller> {
         match self {

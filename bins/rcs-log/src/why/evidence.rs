@@ -219,7 +219,6 @@ fn force_words(sensor: &SensorPara, nearest: f64, way: &str) -> String {
     }
 }
 
-/// A sensor as text: `"SEATED-2" (seated in holster 2)`.
 fn sensor_name(sensor: &SensorPara) -> String {
     let what = match (sensor.source, sensor.which) {
         (SensorSource::Near | SensorSource::Seated, holster) => {

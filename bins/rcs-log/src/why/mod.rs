@@ -178,7 +178,6 @@ fn tell(
     Some(Story { report, first_cause, evidence, begun })
 }
 
-/// The end of the trace, in a sentence.
 fn first_cause(history: &History, root: Root, since: u64, found: &evidence::Evidence) -> String {
     let name = history.info(root.process).name;
     let seconds = root.tick.saturating_sub(since) as f64 * TICK_S;

@@ -32,7 +32,6 @@ pub struct Rung {
     effect: String, // action and next step as text
 }
 
-/// All processes in a tick, from Task down.
 pub fn all(moment: &Moment, processes: Processes) -> Vec<Rung> {
     let rungs = processes.iter().zip(ProcessId::ALL).map(|(process, id)| {
         let header = moment.after.header(*id);

@@ -1,5 +1,4 @@
-//! The first failure in the world, with the commands that led to it from the workstation controller down, each with its
-//! row, and the data that the last row used, with file, block and line.
+//! The first failure in the world: the commands and rows that led to it, and the data of the last row with its line.
 
 use closed_loop::{
     account::Account,
@@ -37,7 +36,6 @@ impl Motion {
     }
 }
 
-/// The first failure, with its commands. It has data if a command can have caused it.
 pub fn first(log: &Log, account: Account, chain: &Chain) -> World {
     let Failure { tick, kind, .. } = account.first;
     let mut world = World { account, commands: chain.commands.clone(), data: Vec::new() };

@@ -81,14 +81,12 @@ impl fmt::Display for Kind {
     }
 }
 
-/// Name of a process on the command line.
 fn word_of(process: ProcessId) -> &'static str {
     process.field()
 }
 
 impl Kind {
-    /// The kinds that a word of the command line selects: `restart` selects one per process, `fault` one per file that
-    /// can be switched on. Errors: [`Error::Campaign`] for an unknown word; it lists all words.
+    /// `restart` selects one kind per process, `fault` one per file that can be switched on. Errors list all words.
     pub fn named(text: &str, data: &Path, cell: &CellDescription) -> Result<Vec<Self>, Error> {
         let process = |name: &str| ProcessId::ALL.iter().copied().find(|process| word_of(*process) == name);
         let found = match text.split_once(':') {

@@ -136,7 +136,6 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
     Ok(Some(report.column()))
 }
 
-/// Run one branch, and print every row that fires in it.
 fn tell(
     arguments: &CampaignArguments,
     facility: &Facility,

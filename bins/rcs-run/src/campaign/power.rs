@@ -4,7 +4,6 @@ use record::journal::{self, Entry, FormatError, Identity};
 
 use super::branch::Branch;
 
-/// The journal after the last tick, as a run would have written it.
 pub fn journal(branch: &Branch<'_>) -> Vec<u8> {
     let entry = Entry {
         tick: branch.at(),

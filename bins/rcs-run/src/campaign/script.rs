@@ -130,7 +130,6 @@ impl Script {
         (!steps.is_empty()).then(|| Self::new(steps))
     }
 
-    /// True if no step is left.
     #[must_use]
     pub const fn is_over(&self) -> bool {
         self.at >= self.steps.len()

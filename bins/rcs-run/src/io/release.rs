@@ -14,8 +14,7 @@ use crate::rcs_run::{
 /// Time for which the safe outputs are written before they are read back.
 const WRITTEN_FOR: Duration = Duration::from_millis(200);
 
-/// Make the outputs of all devices safe, after a question for each device that has outputs on. Exit status 0 if all
-/// have confirmed it, 1 if not. Fails if the mapping cannot be used, or another process has a device.
+/// Asks for each device that has outputs on. Exit status 0 if all have confirmed the safe outputs, 1 if not.
 pub fn release(arguments: &IoReleaseArguments) -> Result<ExitCode, Error> {
     let bench = Bench::open(&arguments.mapping)?;
     let mut is_done = true;

@@ -80,7 +80,6 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// The first failure, as a sentence.
     pub fn failure(&self) -> Option<String> {
         let devices = self.devices.iter().map(|device| (&device.name, device.verdict));
         let inputs = self.inputs.iter().map(|input| (&input.name, input.verdict));

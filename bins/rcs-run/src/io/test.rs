@@ -33,8 +33,7 @@ use crate::rcs_run::{
 const MOST_FAILED_OF: u64 = 100; // a device of which more than one exchange in so many fails is not usable
 const IDENTITY: usize = 7; // registers of the identity of a BK9000
 
-/// Test the couplers and print the verdicts. Exit status 0 if all are good, 1 if not, 3 after an interruption. Fails
-/// if the mapping cannot be used, or another process has a device.
+/// Exit status 0 if all verdicts are good, 1 if not, 3 after an interruption.
 pub fn test(arguments: &IoTestArguments) -> Result<ExitCode, Error> {
     let bench = Bench::open(&arguments.mapping)?;
     let stop = interruption()?;
@@ -78,7 +77,6 @@ pub fn test(arguments: &IoTestArguments) -> Result<ExitCode, Error> {
     })
 }
 
-/// A device during the test of its inputs.
 struct Tested {
     probe: Probe,
     times: Vec<Duration>,

@@ -89,19 +89,16 @@ impl History {
         }
     }
 
-    /// The command that a process had in a tick.
     pub fn command(&self, process: ProcessId, tick: u64) -> Option<&Commanded> {
         // Except for Task, processes read commands that were written one tick earlier.
         let written = if process == ProcessId::Task { tick } else { tick.saturating_sub(1) };
         latest(&self.commands[process.position()], written, |command| command.tick)
     }
 
-    /// The row that fired in a process in a tick, with the tick of its first firing.
     pub fn row(&self, process: ProcessId, tick: u64) -> Option<&Fired> {
         latest(&self.rows[process.position()], tick, |fired| fired.tick)
     }
 
-    /// The report of a process in a tick, with the tick of its writing.
     pub fn report(&self, process: ProcessId, tick: u64) -> Option<&Reported> {
         latest(&self.reports[process.position()], tick, |report| report.tick)
     }
@@ -154,7 +151,6 @@ pub fn conditions(fired: &table::Fired) -> Vec<String> {
     step.into_iter().chain(fired.conditions().map(|asked| condition(&asked))).collect()
 }
 
-/// A condition as text: `held is Nothing`.
 pub fn condition(asked: &Condition) -> String {
     format!("{} is {}", asked.variable, asked.values.join(" or "))
 }

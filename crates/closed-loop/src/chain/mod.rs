@@ -66,7 +66,6 @@ impl Chain {
         }
     }
 
-    /// The last command that led to the first failure, if any.
     #[must_use]
     pub fn last_command(&self) -> Option<&Link> {
         self.commands.last().or_else(|| self.report.as_ref()?.commands.last())

@@ -73,7 +73,6 @@ impl Desk {
         }
     }
 
-    /// The orders of the last tick, in the order of the devices.
     pub fn orders(&self) -> impl Iterator<Item = &Orders> {
         self.couplers.iter().map(|coupler| &coupler.orders)
     }
@@ -96,7 +95,6 @@ impl Desk {
         }
     }
 
-    /// The newest reports, in the order of the devices.
     pub fn reports(&self) -> impl Iterator<Item = &Report> {
         self.couplers.iter().map(|coupler| &coupler.report)
     }

@@ -17,8 +17,7 @@ pub enum Happened {
     Back(u32),     // the device answers again after this time, ms, and continues
     Tripped(Trip), // the outputs of the device are safe until an operator releases it
     Released,
-    /// The release was refused: an output that must be off at rest is commanded, the device does not answer, or the
-    /// safety circuit is open.
+    /// An output that must be off at rest is commanded, the device does not answer, or the safety circuit is open.
     Refused,
     Asks(String), // a line of the job needs a person
     Ended(bool),  // the run has ended; true if the device has confirmed its last outputs

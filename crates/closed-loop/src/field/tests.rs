@@ -19,7 +19,6 @@ fn sensors(tick: u64) -> DeviceInputs {
     inputs
 }
 
-/// Outputs that close the parts gripper and press the tool gripper.
 fn closing() -> DeviceOutputs {
     let mut outputs = DeviceOutputs::default();
     outputs.grip.bits = valve::SUPPLY | valve::CLOSE_COARSE;

@@ -126,7 +126,6 @@ impl Station {
         self.shared.is_cut.store(is_cut, Ordering::Relaxed);
     }
 
-    /// Switches the coupler off and on: see [`Emulated::restart`].
     pub fn restart(&self) {
         self.with(|coupler| {
             coupler.restart();

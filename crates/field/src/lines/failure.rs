@@ -23,7 +23,6 @@ pub enum Why {
     Tripped(String),     // this device is tripped; the line can begin again
 }
 
-/// A point and its value when a line failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Observed {
     pub point: String,

@@ -88,7 +88,6 @@ impl Bench {
         self.lines.begin(&self.mapping, line).unwrap();
     }
 
-    /// Runs some ticks with these inputs.
     fn ticks(&mut self, inputs: u16, count: u64) -> &mut Self {
         self.inputs = inputs;
         for _ in 0..count {

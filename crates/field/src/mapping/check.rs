@@ -18,7 +18,6 @@ fn unlike(path: &str, expected: impl std::fmt::Display, found: impl std::fmt::Di
     Problem::unlike(KIND.value, path, expected, found)
 }
 
-/// A mistake at an entry, in its own words.
 fn says(path: &str, message: impl std::fmt::Display) -> Problem {
     Problem::of_entry(KIND.value, path, format!("{path}: {message}"))
 }

@@ -80,7 +80,6 @@ pub struct Device {
     pub plan: Plan,       // plan of the connection: address, process data, watchdog
 }
 
-/// How a group of devices is present.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
     Mapped,
@@ -102,7 +101,6 @@ impl Presence {
     }
 }
 
-/// Where the value of a point is in the image of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Slot {
     pub device: usize,
@@ -113,7 +111,6 @@ pub(crate) struct Slot {
     pub invert: bool,
 }
 
-/// What has the value of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target<T> {
     Word(T),
@@ -133,7 +130,6 @@ pub struct InPoint {
     pub(crate) then: Option<i64>,
 }
 
-/// Where the value of an input comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
     Slot(Slot),

@@ -35,13 +35,11 @@ fn parse(text: &str) -> Result<Mapping, Vec<String>> {
     })
 }
 
-/// The mistakes of the right file after a change.
 fn changed(from: &str, to: &str) -> Vec<String> {
     assert!(RIGHT.contains(from), "{from:?} is not in the file");
     parse(&RIGHT.replacen(from, to, 1)).expect_err(to)
 }
 
-/// The mistakes of the right file with more inputs.
 fn with_input(line: &str) -> Vec<String> {
     changed("\n[out]\n", &format!("{line}\n\n[out]\n"))
 }

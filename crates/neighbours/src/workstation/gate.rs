@@ -113,8 +113,7 @@ impl Default for Gate {
 }
 
 impl Gate {
-    /// The gate of a controller that starts with its last command, which it does not execute. The next command may have
-    /// any other number.
+    /// The controller starts with its last command, which is not executed. The next may have any other number.
     #[must_use]
     pub fn resumed(command: &HwsCommand) -> Self {
         Self { command: *command, ..Self::default() }

@@ -53,7 +53,6 @@ struct Machine {
     fault: u64, // ticks for which the fault is still reported
 }
 
-/// The devices, with the outputs and sensors of a mapping.
 #[derive(Clone, Debug)]
 pub struct Devices {
     programs: Programs,
@@ -111,7 +110,6 @@ impl Devices {
         self.estop = pressed;
     }
 
-    /// What the devices report to their operator, since the last call.
     pub fn messages(&mut self) -> Vec<String> {
         std::mem::take(&mut self.messages)
     }
@@ -293,7 +291,6 @@ impl Devices {
     }
 }
 
-/// True if the fingertips of the robot are far from a place.
 fn is_clear(cell: &Cell, location: &str) -> bool {
     let place = match cell.description.machine_at(location, "") {
         Ok(super::order::Machine::Nest(nest)) => nest.frame().position,
@@ -302,7 +299,6 @@ fn is_clear(cell: &Cell, location: &str) -> bool {
     (cell.tool().position - place).norm() > CLEAR
 }
 
-/// Name of the tool at the fingers of the drum.
 fn parts_name_in_drum(cell: &Cell) -> Option<&str> {
     let pocketed = cell.drum.tool?;
     cell.parts.get(pocketed.part).map(|part| part.kind.name.as_str())

@@ -101,8 +101,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Build the cell of a description. The seed determines the noise of the sensors and the random places of parts.
-    /// Fails if the description cannot be used.
+    /// The seed determines sensor noise and random places of parts. Fails if the description cannot be used.
     pub fn new(description: &CellDescription, seed: u64) -> Result<Self, CellError> {
         Self::with_faults(description, seed, &FaultPlan::default())
     }
@@ -247,7 +246,6 @@ impl Cell {
         self.faults.outputs(outputs)
     }
 
-    /// Report faults that begin or end.
     pub(super) fn tell(&mut self, changes: Vec<Change>) {
         self.events.extend(changes.into_iter().map(|Change { number, text, begins }| {
             if begins {
@@ -258,8 +256,7 @@ impl Cell {
         }));
     }
 
-    /// Adds faults that begin in later ticks to those of the plan. Faults that displace something are ignored: the
-    /// cell is already built.
+    /// Adds faults that begin in later ticks; those that displace something are ignored, as the cell is already built.
     pub fn add_faults(&mut self, faults: &FaultPlan, seed: u64) {
         self.faults.add(faults, seed);
     }
@@ -275,7 +272,6 @@ impl Cell {
         self.faults.struck()
     }
 
-    /// True if a fault has cut the connection of a device of the field I/O.
     #[must_use]
     pub fn is_device_cut(&self, device: &str) -> bool {
         self.faults.is_device_cut(device)
@@ -304,8 +300,7 @@ impl Cell {
         *self.t3.arm().joints()
     }
 
-    /// The tool frame with the deflection of arm and fingers, inches: the middle between the fingertips, or its
-    /// place on a robot without a gripper.
+    /// The tool frame with the deflection of arm and fingers, in: between the fingertips, or there without a gripper.
     #[must_use]
     pub fn tool(&self) -> Frame {
         match self.changer.carried() {
@@ -314,8 +309,7 @@ impl Cell {
         }
     }
 
-    /// Finger opening, in, and force of a finger, lb, of the mated gripper: true values, not sensor readings. Zeros
-    /// without a gripper.
+    /// Opening, in, and force, lb, of a finger of the mated gripper: true values; zeros without a gripper.
     #[must_use]
     pub fn fingers(&self) -> (f64, f64) {
         let gripper = self.changer.mated().map(|hand| self.hand(hand));
@@ -345,7 +339,6 @@ impl Cell {
         (0..self.parts.len()).map(|index| self.part_state(index)).collect()
     }
 
-    /// The frame of a part, in, by its number.
     #[must_use]
     pub fn part_frame(&self, id: u32) -> Option<Frame> {
         self.parts.iter().find(|part| part.id == id).map(|part| part.frame(&self.world))
@@ -355,8 +348,7 @@ impl Cell {
         std::mem::take(&mut self.events)
     }
 
-    /// Press a key of the T3 controller's console, its teach pendant, or an emergency stop. Errors: [`Refusal`] with
-    /// the missing step. The state is then unchanged.
+    /// Presses a key or an emergency stop. Errors: [`Refusal`] with the missing step; the state is unchanged.
     pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
         let done = self.t3.press(key);
         self.hear_t3();
@@ -391,7 +383,6 @@ impl Cell {
         self.host_ready = ready;
     }
 
-    /// State of the DEPC function of the T3 controller.
     #[must_use]
     pub fn depc(&self) -> ControllerState {
         self.t3.depc().state()

@@ -103,7 +103,6 @@ impl Injector {
         }));
     }
 
-    /// Begin and end the faults of the present tick.
     pub(crate) fn turn(&mut self) -> Vec<Change> {
         let tick = self.tick;
         self.faults.iter_mut().filter_map(|running| running.turn(tick)).collect()
@@ -119,7 +118,6 @@ impl Injector {
         self.faults.iter().filter(|running| running.active).map(|running| &running.fault.what)
     }
 
-    /// The controller's commands with the faults of valves applied.
     #[must_use]
     pub fn outputs(&self, outputs: &DeviceOutputs) -> DeviceOutputs {
         let mut arrives = *outputs;
@@ -137,7 +135,6 @@ impl Injector {
         arrives
     }
 
-    /// Apply the faults to the sensor words.
     pub fn inputs(&mut self, inputs: &mut DeviceInputs) {
         let tick = self.tick;
         for running in self.faults.iter_mut().filter(|running| running.active) {
@@ -212,7 +209,6 @@ impl Injector {
         (delivery, changes)
     }
 
-    /// The description with the initial displacements of the faults.
     #[must_use]
     pub fn displaced(&self, description: &CellDescription) -> CellDescription {
         super::displaced(self.faults.iter().map(|running| &running.fault), description)
@@ -239,7 +235,6 @@ fn happens(rate: Option<f64>, noise: &mut Noise) -> bool {
 }
 
 impl Running {
-    /// Begin or end the fault if it is due in this tick.
     fn turn(&mut self, tick: u64) -> Option<Change> {
         if self.fault.what.is_delivery() {
             return None;
@@ -276,7 +271,6 @@ impl Running {
         Change { number: self.fault.number, text: self.fault.what.to_string(), begins }
     }
 
-    /// Apply an error to a sensor word.
     fn disturb(&mut self, sensor: Input, disorder: Disorder, tick: u64, inputs: &mut DeviceInputs) {
         let shown = sensor.read(inputs);
         let counts = |by: f64| libm::round(by) as i64;

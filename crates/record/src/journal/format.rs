@@ -98,8 +98,7 @@ pub struct Contents {
 }
 
 impl Contents {
-    /// The buffers for a controller that starts after tick `after`. After a later entry that was cut off, the command
-    /// under way may have changed the cell.
+    /// Buffers for a start after tick `after`. After a torn entry, the command under way may have changed the cell.
     #[must_use]
     pub fn memory(&self, after: Tick) -> CommonMemory {
         let kept = if self.torn { doubted(&self.newest.memory) } else { self.newest.memory };
@@ -152,7 +151,6 @@ pub fn begun(identity: &Identity, first: Option<&Entry>) -> (Vec<u8>, u64) {
     (bytes, hash)
 }
 
-/// Position of the slot of an entry in the journal.
 #[must_use]
 pub fn place(sequence: u64) -> usize {
     let slots = u64::try_from(SLOTS).unwrap_or(1);

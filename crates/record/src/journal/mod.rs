@@ -56,7 +56,6 @@ pub enum JournalError {
     Thread(io::Error),
 }
 
-/// Read a journal from its file.
 pub fn open(path: &Path) -> Result<Contents, JournalError> {
     let limit = u64::try_from(LENGTH).unwrap_or(u64::MAX).saturating_mul(2);
     let bytes =

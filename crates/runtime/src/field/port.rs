@@ -24,7 +24,6 @@ use crate::{boards::Controller, config::RunConfig, error::StartError, observer::
 const REFUSED_FOR: Duration = Duration::from_secs(2);
 const PAUSE: Duration = Duration::from_millis(10); // pause between two looks at devices that are not ready
 
-/// The devices of a mapping, each with its thread.
 pub struct FieldPort {
     mapping: Arc<Mapping>,
     devices: Vec<Device>,
@@ -60,8 +59,7 @@ impl FieldPort {
         })
     }
 
-    /// Wait until all devices are set up and their inputs are fresh. Errors: [`StartError::FieldNotReady`] if a device
-    /// refuses its set-up, or is not ready within the time limit.
+    /// Waits for fresh inputs of all devices. Fails if one refuses its set-up, or is not ready in time.
     pub fn gather(
         &mut self,
         config: &RunConfig,
@@ -164,8 +162,7 @@ impl FieldPort {
         self.shares.add(self.reading.saturating_add(writing));
     }
 
-    /// End all devices at the same time: they get the outputs of the end and read them back. `inputs` are the last ones
-    /// of the controller.
+    /// All devices at once get the outputs of the end and read them back. `inputs`: the controller's last.
     pub fn end(&mut self, desk: &mut Desk, inputs: &DeviceInputs) {
         desk.end();
         for (device, orders) in self.devices.iter_mut().zip(desk.orders()) {

@@ -12,8 +12,7 @@ use taskdata::files::TaskData;
 
 use super::written;
 
-/// Read `held OBJECT GRIP` or `held nothing`, the words after `resume`. Errors: a message with the expected and the
-/// found text.
+/// Reads `held OBJECT GRIP` or `held nothing`. Errors: the expected and the found text.
 pub fn read(words: &[&str]) -> Result<Write, String> {
     let held = Variable::Held.text();
     match words {
@@ -26,8 +25,7 @@ pub fn read(words: &[&str]) -> Result<Write, String> {
     }
 }
 
-/// Check the name of the held object, or that nothing is held. Errors: a message with the reason of the refusal, and
-/// the remedy.
+/// Checks the name of the held object, or that nothing is held. Errors: reason and remedy.
 pub fn check(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     if memory.emove.status.report == StatusReport::Executing {
         return Err("E-move executes a command: send PAUSE and ask again".to_owned());
@@ -46,7 +44,6 @@ pub fn check(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Resul
     }
 }
 
-/// The estimates, each beside its sensor.
 #[must_use]
 pub fn state(memory: &CommonMemory) -> String {
     let (emove, gripper) = (&memory.emove, EmoveGripper::attached(memory));

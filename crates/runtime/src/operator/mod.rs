@@ -117,14 +117,12 @@ impl Operator {
         }
     }
 
-    /// The operators' joystick box of the next tick.
     #[must_use]
     pub fn at_the_box(&self) -> JoystickBox {
         let velocity = if self.is_stopped { 0 } else { self.shown.velocity };
         JoystickBox { velocity, ..self.shown }
     }
 
-    /// Input of the controller from the terminals in the next tick.
     #[must_use]
     pub const fn at_the_terminals(&self) -> &OperatorInputs {
         self.terminals.inputs()
@@ -136,15 +134,13 @@ impl Operator {
         (self.commander.as_deref(), &self.sessions, self.is_stopped)
     }
 
-    /// Called once per tick, after all requests: sets the box and the terminals for the next tick.
-    /// `is_table_led` is true while a key of its panel moves the rotary table.
+    /// Sets box and terminals for the next tick. `is_table_led`: a key of its panel moves the rotary table.
     pub fn end_tick(&mut self, is_table_led: bool) {
         self.shown = self.hand.read();
         self.terminals.end_tick();
         self.turns_table &= is_table_led;
     }
 
-    /// The part of the last request that the run must execute.
     pub const fn take_later(&mut self) -> Option<Later> {
         self.later.take()
     }
@@ -350,7 +346,6 @@ impl Operator {
         }
     }
 
-    /// Give the command to an operator, if no other one has it.
     fn take_command(&mut self, who: &str) -> Result<(), String> {
         match &self.commander {
             Some(other) if other != who => Err(format!(
@@ -399,7 +394,6 @@ fn directory(data: &Path) -> String {
     absolute.unwrap_or_else(|_| data.to_owned()).display().to_string()
 }
 
-/// The job, if it is the source of commands.
 fn job<'a>(around: &'a mut Around<'_>) -> Result<&'a mut Hwsc, String> {
     around.neighbours.job_under_way()
 }
@@ -433,7 +427,6 @@ mod tests {
         assert!(refused.starts_with("a commands this run"), "{refused}");
     }
 
-    /// An operator who commands, with the knob at 400 and everything that a session can hold.
     fn holding(robot_elsewhere: bool) -> Operator {
         let mut operator = Operator::new(robot_elsewhere);
         operator.take_command("a").unwrap();

@@ -26,8 +26,7 @@ pub fn emergency(workstation: &SimulatedWorkstation) -> Option<String> {
     Some(format!("EMERGENCY: {} {is_are} pressed: {}, {START_UP}", sites.join(" and "), releases.join(", ")))
 }
 
-/// Refuse to continue a job under an emergency, unless a line of the job itself resets it. Errors: the emergency and
-/// its remedy.
+/// Refuses to continue under an emergency, unless the job resets it. Errors: the emergency and its remedy.
 pub fn check_job(around: &mut Around<'_>) -> Result<(), String> {
     match emergency(around.workstation) {
         Some(why) if !around.neighbours.job_under_way()?.resets_emergency() => {
@@ -48,8 +47,7 @@ pub fn is_moved_by_hand(memory: &CommonMemory) -> bool {
         || memory.task.status.report == HwsReport::JoystickOn
 }
 
-/// Refuse to make outputs safe while a command is executed or something is held: safe outputs hold no part. Errors:
-/// the hindrance and its remedy.
+/// Refuses safe outputs, which hold no part, during a command or with a held object. Errors: hindrance and remedy.
 pub fn check_safe(memory: &CommonMemory) -> Result<(), String> {
     if memory.task.status.report == HwsReport::Executing {
         return Err(
@@ -62,8 +60,7 @@ pub fn check_safe(memory: &CommonMemory) -> Result<(), String> {
     Ok(())
 }
 
-/// The obstacles to the robot's motion although the job plays; empty if there are none. `knob` is the
-/// operators' knob, `shown` their joystick box, `terminals` their entries.
+/// Empty without obstacles. `knob`, `shown` and `terminals` are the operators' knob, joystick box and entries.
 pub fn of_the_robot(
     memory: &CommonMemory,
     knob: u16,

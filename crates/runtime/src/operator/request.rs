@@ -214,7 +214,6 @@ pub fn first_words() -> Vec<&'static str> {
     words.into_iter().collect()
 }
 
-/// The refusal of a request that begins with an unknown word.
 fn unknown(word: &str) -> String {
     match nearest(word, first()) {
         Some(near) => format!("no request is named {word}: the nearest is {near}"),
@@ -222,8 +221,7 @@ fn unknown(word: &str) -> String {
     }
 }
 
-/// Read `line-load BLOCK LINE LINE` (IV.3.3): the command in these lines of the block; `None` if the words begin
-/// another request.
+/// Reads `line-load BLOCK LINE LINE` (IV.3.3); `None` if the words begin another request.
 fn line_load(words: &[&str], store: &Store) -> Option<Result<Request, String>> {
     let ["line-load", numbers @ ..] = words else { return None };
     let expected = || "line-load BLOCK LINE LINE was expected, such as line-load 863 12 12".to_owned();

@@ -20,18 +20,15 @@ pub enum Inputs {
     Sessions(Listener),
     /// A log, read tick by tick, with the texts that were loaded during the run.
     Recorded(VecDeque<OperatorLine>, Texts),
-    /// The program that runs the tick ([`Run::ask`](crate::Run::ask)): requests for the next tick, and the
-    /// verdict on the last one.
+    /// The program that runs the tick (`Run::ask`): requests for the next tick, and the last verdict.
     Program(VecDeque<(String, Event)>, Option<Result<String, String>>),
 }
 
-/// Blocks and jobs that were loaded during a run, from its log.
 #[derive(Default)]
 pub struct Texts {
     blocks: Vec<(u32, Source)>, // blocks, by the generation of the task data that each created
     jobs: Vec<(u32, Source)>,
-    /// Loads of the workstation controller. It also requests them in a repetition; only their verdicts are from
-    /// the log.
+    /// Loads of the workstation controller, which requests them in a repetition, too; only the verdicts are the log's.
     workstation: VecDeque<OperatorLine>,
     end: Tick, // the last tick of the log
 }
@@ -123,8 +120,7 @@ impl Input {
 }
 
 impl Inputs {
-    /// Open the source of a configuration. Operators can connect to a run on the 40 ms grid that has shared memory.
-    /// Errors: [`StartError::Inputs`].
+    /// Operators can connect to a run on the 40 ms grid that has shared memory.
     pub fn of(config: &RunConfig, name: &RunName, observer: &mut dyn Observer) -> Result<Self, StartError> {
         if let Some(path) = &config.inputs {
             return Self::recorded(path, observer);
@@ -169,7 +165,6 @@ impl Inputs {
         Ok(Self::Recorded(operators, texts))
     }
 
-    /// Path at which operators connect, if they can.
     #[must_use]
     pub fn socket(&self) -> Option<&Path> {
         match self {
@@ -178,7 +173,6 @@ impl Inputs {
         }
     }
 
-    /// Entry for operators of a network, if they can connect.
     #[must_use]
     pub fn entrance(&self) -> Option<Entrance> {
         match self {
@@ -224,19 +218,16 @@ impl Inputs {
         true
     }
 
-    /// Store the verdict on a request of the program that runs the tick.
     pub fn keep(&mut self, verdict: &Result<String, String>) {
         if let Self::Program(_, last) = self {
             *last = Some(verdict.clone());
         }
     }
 
-    /// The verdict on the last request of the program that runs the tick.
     pub const fn take_verdict(&mut self) -> Option<Result<String, String>> {
         if let Self::Program(_, last) = self { last.take() } else { None }
     }
 
-    /// The next input for `tick`.
     pub fn next(&mut self, tick: Tick) -> Option<Input> {
         match self {
             Self::None => None,

@@ -29,7 +29,6 @@ pub enum Entry {
     Confirm(Support), // support that keeps the object from falling when the gripper opens
 }
 
-/// Name of a process in requests.
 fn name(process: ProcessId) -> String {
     process.field().to_uppercase().replace('_', "-")
 }
@@ -92,8 +91,7 @@ pub struct Terminals {
     shown: OperatorInputs,
     passes: VecDeque<u16>, // processes to execute in the next ticks, one entry per tick
     writes: [Option<Write>; WRITES], // values to write in the next tick
-    /// The name of the held object, and the number of ticks since it was given. A variable is written while its
-    /// process is stopped: E-move stops for two ticks.
+    /// Name of the held object, and its age, ticks. E-move stops for two ticks, because only then it can be written.
     naming: Option<(Write, u8)>,
     order: Option<HandOrder>,   // order to the pedestal in the next tick
     confirmed: Option<Support>, // statement about the object in the gripper, for the next tick
@@ -135,8 +133,7 @@ impl Terminals {
         had_some
     }
 
-    /// Execute an entry. `memory` is common memory after the last tick, which has the number `tick`; `data` are the
-    /// task data of the next one.
+    /// `memory` is common memory after `tick`; `data` are the task data of the next one.
     pub fn enter(
         &mut self,
         entry: Entry,
@@ -222,8 +219,7 @@ impl Terminals {
         Ok(answer)
     }
 
-    /// Initialize the link: E-move sends ROBOT-INIT to Prim during E-PAUSE. On a stopped board each process is
-    /// executed as often as needed.
+    /// E-move sends ROBOT-INIT to Prim during E-PAUSE; on a stopped board each process is executed as often as needed.
     fn initialize(&mut self, memory: &CommonMemory) -> Result<String, String> {
         let command = memory.subtask.emove.command;
         if !matches!(command, EmoveVerb::None | EmoveVerb::Pause) {
@@ -239,7 +235,6 @@ impl Terminals {
     }
 }
 
-/// Effect of a stop of a board on robot and grippers, as text.
 const fn what_stops(board: u8) -> &'static str {
     match board {
         0 => "there is no pulse: no process is stepped, and the robot stands where it was sent last",

@@ -1,5 +1,4 @@
-//! `<=` (IV.2.6): a value for a variable of a stopped process. [`Variable`] lists the writable variables. Each
-//! value is checked against the task data and the sensors before the controller receives it.
+//! `<=` (IV.2.6): a value for a [`Variable`] of a stopped process, checked against task data and sensors first.
 
 use geometry::units::inches;
 use interfaces::{
@@ -39,15 +38,13 @@ pub fn read(words: &[&str]) -> Result<Write, String> {
     })
 }
 
-/// Check a value for the next tick. Returns the old and the new value, as text for operator and log. Errors: a message
-/// with the reason of the refusal, and the remedy.
+/// Returns the old and the new value, for operator and log. Errors: reason and remedy.
 pub fn check(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     stands(write.variable.owner(), memory)?;
     check_value(write, memory, data)
 }
 
-/// Like [`check`], for a process that is stopped only after the check. Errors: a message with the reason of the
-/// refusal, and the remedy.
+/// [`check`] for a process that is stopped only afterwards.
 pub fn check_value(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     if let Some(object) = &write.object {
         is_in_data(write, object, data)?;
@@ -59,8 +56,7 @@ pub fn check_value(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) ->
     Ok(format!("{} was {}, is {}", write.variable, old_value(write.variable, memory), new_value(write)))
 }
 
-/// Check that a process is stopped, so that its variables or its block can be changed. Errors: a message that names
-/// the request to stop it.
+/// Only then its variables or its block can be changed. Errors: the request that stops it.
 pub fn stands(process: ProcessId, memory: &CommonMemory) -> Result<(), String> {
     if may_be_written(process, memory) {
         Ok(())
@@ -69,7 +65,6 @@ pub fn stands(process: ProcessId, memory: &CommonMemory) -> Result<(), String> {
     }
 }
 
-/// The request that stops a process.
 fn stop_of(process: ProcessId) -> String {
     let board = format!("`board {} stop`", process.board());
     match process {

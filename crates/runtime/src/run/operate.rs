@@ -20,15 +20,12 @@ use crate::{
     operator::{A_TICK, Around, Input, Later, WORKSTATION},
 };
 
-/// Longest time for which a command waits for a robot that is coming to rest after a motion by hand. It is less
-/// than the second for which a sender waits for its answer.
+/// Longest wait for a robot that is coming to rest after a motion by hand: less than the second of the sender.
 const REST_TICKS: u64 = 20;
 
 impl Run {
-    /// Execute an operator's event in this program, for a run without other operators: in the fast clock, or with none
-    /// configured. Runs one tick and then executes the event, which takes effect in the next tick. A session begins
-    /// with [`Event::Connected`]. Errors: the reason of the refusal, or that the run has ended or has another source
-    /// of operators' inputs.
+    /// Executes an operator's event after a tick, for a run without other operators; it takes effect in the next tick.
+    /// A session begins with [`Event::Connected`]. Errors: a refusal, the end of the run, or another source of inputs.
     pub fn ask(&mut self, who: &str, event: Event) -> Result<String, String> {
         if !self.asked.ask(who, event) {
             return Err("the operators of this run are elsewhere".to_owned());
@@ -108,7 +105,6 @@ impl Run {
         }
     }
 
-    /// Answer a load and log it.
     fn loaded(&mut self, tick: Tick, (asker, verdict): Answer) {
         match asker {
             LoadSource::Operator(input) => {
@@ -142,7 +138,6 @@ impl Run {
         }
     }
 
-    /// Play a job of the data directory instead of the rest of the present one.
     fn play(&mut self, tick: Tick, name: &str) -> Result<String, String> {
         let number = self.loads.played.saturating_add(1);
         let source = match self.asked.recorded_job(number) {
@@ -168,8 +163,7 @@ impl Run {
         Ok(format!("the job {name} plays, lines: {lines}"))
     }
 
-    /// Check that a job can be started during a run: it must load no blocks, not transfer the command, and need
-    /// only what the cell has.
+    /// A job that is started during a run must load no blocks, not hand over, and need only what the cell has.
     fn can_be_played(&self, job: &Job) -> Result<(), String> {
         if job.steps.is_empty() {
             return Err(format!("the job {} has no line", job.name));
@@ -191,7 +185,6 @@ impl Run {
     }
 }
 
-/// The text of a job of the data directory.
 fn job_named(name: &str, data: &Path) -> Result<Source, String> {
     let mut parts = Path::new(name).components();
     if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None)) {

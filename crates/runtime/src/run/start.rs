@@ -53,7 +53,6 @@ fn announced(config: &RunConfig) -> Result<Option<Announced>, StartError> {
     }
 }
 
-/// Announce a run without a given name.
 fn announced_by_job(config: &RunConfig, job: &str) -> Option<Announced> {
     let is_nameless = config.name.is_none() && config.shared_memory;
     is_nameless.then(|| Announced::of_job(job).ok()).flatten()
@@ -73,21 +72,18 @@ fn publisher(config: &RunConfig, name: &RunName, observer: &mut dyn Observer) ->
     publisher.ok()
 }
 
-/// Open the mirror of the status, which is optional too.
 fn mirror(publisher: &Publisher, observer: &mut dyn Observer) -> Option<Mirror> {
     let mirror = Mirror::start(publisher);
     mirror.inspect_err(|error| observer.message(&format!("the status is not mirrored: {error}"))).ok()
 }
 
 impl Run {
-    /// Read, check and start everything that the run needs, and wait for boards, neighbours and robot controller.
-    /// Fails if the run cannot begin, with all errors of the data. The robot has not moved.
+    /// Starts everything and waits for boards, neighbours and robot controller. On errors the robot has not moved.
     pub fn new(config: RunConfig, observer: Box<dyn Observer>) -> Result<Self, StartError> {
         Self::start(config, None, observer)
     }
 
-    /// Like [`Run::new`], with a robot of the caller instead of the configured one. Errors: the errors of
-    /// [`Run::new`].
+    /// [`Run::new`] with a robot of the caller instead of the configured one.
     pub fn with_robot(
         mut config: RunConfig,
         robot: Box<dyn OwnRobot>,

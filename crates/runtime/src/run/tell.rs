@@ -23,7 +23,6 @@ use crate::{
 };
 
 impl Run {
-    /// Report an event outside the cell's ticks to the log and the observer.
     pub(crate) fn log_event(&mut self, tick: Tick, event: &Event) {
         self.observer.event(tick, event);
         if let Some(log) = &mut self.log {
@@ -31,7 +30,6 @@ impl Run {
         }
     }
 
-    /// Log the cell of the next tick, and its events.
     pub(super) fn show_cell(&mut self) {
         let tick = self.closed.tick().next();
         let Some(log) = &mut self.log else { return self.fresh.clear() };
@@ -89,7 +87,6 @@ impl Run {
         }
     }
 
-    /// Log the state of the line to the robot when it changes.
     pub(super) fn watch_link(&mut self, tick: Tick, memory: &CommonMemory) {
         if memory.t3i.status.link_running {
             self.first_silence_limit = None;

@@ -204,8 +204,7 @@ impl Client {
         Ok(())
     }
 
-    /// Sends a request to the run as an operator, and waits for the answer, which the run gives between two
-    /// ticks. The request is at most as old as the last ping that the client has answered.
+    /// The run answers between two ticks. The request is at most as old as the last ping that the client has answered.
     fn ask(&mut self, line: &str) -> Result<String, String> {
         let access = self.access.as_ref().ok_or("this run accepts no requests")?;
         let mut operator = match self.operator.take() {

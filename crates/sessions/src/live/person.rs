@@ -10,7 +10,6 @@ use crate::{live::http::Refusal, operator::Name};
 pub const NAME: &str = "rcs-person"; // header with the name of the person
 pub const ROLE: &str = "rcs-role"; // header with the role of the person
 
-/// What a person may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     Viewer,
@@ -36,8 +35,7 @@ pub struct Person {
 }
 
 impl Person {
-    /// Reads the headers of a gateway. Errors: a refusal if a header is missing, repeated or invalid: a connection
-    /// without a role gets no rights.
+    /// Fails if a header is missing, repeated or invalid: a connection without a role gets no rights.
     pub fn of(headers: &HeaderMap) -> Result<Self, Refusal> {
         let person = header(headers, NAME).zip(header(headers, ROLE));
         let person = person.map(|(name, role)| Self { name, role });

@@ -61,8 +61,7 @@ pub struct Server {
 }
 
 impl Server {
-    /// Serves the clients that connect to a [`Port`]. The threads inherit the priority of the caller. Errors: the
-    /// error of the operating system if the thread cannot start.
+    /// The threads inherit the priority of the caller. Fails if the thread cannot start.
     pub fn start(port: Port, mut options: Options, feed: Feed) -> io::Result<Self> {
         let info = &mut options.info;
         info.capabilities.push("time");
@@ -83,15 +82,13 @@ impl Server {
         Ok(Self { address, admission, stop, thread: Some(thread), gateway: None })
     }
 
-    /// Also serves the persons for whom a gateway of this user connects at a Unix socket. Errors: the errors of
-    /// [`Acceptor::start`].
+    /// Also serves the persons for whom a gateway of this user connects at a Unix socket.
     pub fn admit_gateway(&mut self, path: &Path) -> io::Result<()> {
         let admission = self.admission.clone();
         self.gateway = Some(Acceptor::start(path, "live gateway", move |stream| admission.enter(stream))?);
         Ok(())
     }
 
-    /// The address on which the server listens.
     #[must_use]
     pub const fn address(&self) -> SocketAddr {
         self.address
@@ -129,8 +126,7 @@ impl Accept {
             }
             match accepted {
                 Ok((stream, _)) => self.admission.admit(Stream::Local(stream)),
-                // The client has already disconnected, or no more files can be opened. The server continues in
-                // both cases.
+                // The client has disconnected, or no more files can be opened. The server continues in both cases.
                 Err(_) => thread::sleep(AGAIN),
             }
         }
@@ -250,7 +246,6 @@ fn check_origin(headers: &HeaderMap, origins: &[Origin]) -> Result<(), Refusal> 
     }
 }
 
-/// The preferred subprotocol among those that the client offers.
 fn agree(headers: &HeaderMap) -> Result<&'static str, Refusal> {
     let asked = headers.get_all(header::SEC_WEBSOCKET_PROTOCOL).iter();
     let asked: Vec<&str> =

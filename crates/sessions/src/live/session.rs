@@ -72,7 +72,6 @@ pub enum Requests {
 }
 
 impl Requests {
-    /// Returns true if the client can send requests.
     #[must_use]
     pub const fn are_offered(&self) -> bool {
         matches!(self, Self::Token(_) | Self::Granted)
@@ -166,7 +165,6 @@ impl Session {
         }
     }
 
-    /// Handles the run's answer to a request.
     #[must_use]
     pub fn answered(&mut self, reply: Reply, verdict: Result<String, String>) -> Vec<Action> {
         match (reply, verdict) {

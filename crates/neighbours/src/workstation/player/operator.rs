@@ -57,7 +57,6 @@ impl fmt::Display for WaitReason {
     }
 }
 
-/// A place in a job.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PlaceInJob {
     pub line: u32,      // the present line, from 1; 0 for the PAUSE before the first
@@ -66,7 +65,6 @@ pub struct PlaceInJob {
     pub delayed: u16,
 }
 
-/// Whether the job runs or waits for the operator.
 #[derive(Clone, Debug, Default)]
 enum State {
     #[default]

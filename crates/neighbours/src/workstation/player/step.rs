@@ -106,12 +106,10 @@ pub(super) fn later(line: &JobLine) -> Option<Later> {
     Some(Later { ticks: u64::from(ticks), action, line, since: None })
 }
 
-/// True if a delayed action is that of a line.
 pub(super) fn spoken_of(of: &Later, line: &JobLine) -> bool {
     later(line).is_some_and(|later| (later.ticks, &later.line) == (of.ticks, &of.line))
 }
 
-/// A line for the workstation without its asterisks.
 fn spoken(line: &str) -> &str {
     line.trim_start().trim_start_matches('*').trim_start()
 }

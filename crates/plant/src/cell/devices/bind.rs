@@ -88,7 +88,6 @@ impl Devices {
         })
     }
 
-    /// Index of the machine at the place of a point.
     fn machine_at(
         &mut self,
         name: &str,
@@ -106,7 +105,6 @@ impl Devices {
     }
 }
 
-/// The first and the last word of a point's name.
 fn ends(name: &str) -> (&str, &str) {
     let first = name.split('.').next().unwrap_or_default();
     (first, name.rsplit('.').next().unwrap_or_default())
