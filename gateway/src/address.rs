@@ -105,7 +105,7 @@ impl fmt::Display for CellAddress {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Right {
-    Claim(Role), // claim a role of the run
+    Claim(Role),
     Monitor, // read the status of the cell
 }
 

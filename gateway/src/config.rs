@@ -97,7 +97,6 @@ fn access_control(certificates: &[(&Name, Rules)]) -> Value {
     })
 }
 
-/// What both sides have in common.
 fn common(mode: &str, keys: &Keys, access_control: &Value) -> Result<Config, zenoh::Error> {
     let mut config = Config::default();
     let values = [

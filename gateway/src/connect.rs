@@ -45,7 +45,6 @@ use crate::{
 const ANSWER: Duration = Duration::from_secs(12);
 const PROGRAMS: usize = 8; // greatest number of programs at the socket
 
-/// What the threads of all connections share.
 struct Neighbourhood {
     address: CellAddress,
     role: Role,
@@ -195,7 +194,6 @@ impl Neighbourhood {
         }
     }
 
-    /// Exchange hellos with a program.
     fn greet(&self, stream: UnixStream, clock: ClockKind) -> Result<(LineSession, Line), String> {
         fn said(error: impl ToString) -> String {
             error.to_string()
@@ -256,7 +254,6 @@ impl Neighbourhood {
     }
 }
 
-/// Send what is left, and close the connection.
 fn close(line: &mut Line, session: &mut LineSession) {
     let until = Instant::now() + CLOSING;
     line.finish(session.output(), until);

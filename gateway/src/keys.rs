@@ -74,7 +74,6 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// The keys of `name` in a directory, checked.
     pub fn load(directory: &Path, name: &Name) -> Result<Self, KeysError> {
         let keys = Self {
             name: name.clone(),

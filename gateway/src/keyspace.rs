@@ -46,13 +46,11 @@ impl CellKeys {
         format!("{}/alive/{gateway}", self.0)
     }
 
-    /// State of the run.
     #[must_use]
     pub fn run(&self) -> String {
         format!("{}/status/run", self.0)
     }
 
-    /// Image of a mailbox.
     #[must_use]
     pub fn mailbox(&self, address: u32) -> String {
         format!("{}/status/mailbox/{address:05X}", self.0)
@@ -81,7 +79,6 @@ impl ClaimKeys {
         format!("{}/out", self.0)
     }
 
-    /// Token of the neighbour.
     #[must_use]
     pub fn alive(&self) -> String {
         format!("{}/alive", self.0)

@@ -23,7 +23,7 @@ const LINE: usize = 400; // greatest length of a line, characters
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     Gateway, // the gateway's own events
-    Refused, // clients that are refused
+    Refused,
     Zenoh, // warnings of Zenoh, among them failed handshakes
 }
 

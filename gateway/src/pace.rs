@@ -12,7 +12,7 @@ use crate::address::Name;
 
 /// Pause after the first refusal; it doubles with each further one.
 const SHORTEST: Duration = Duration::from_millis(100);
-const LONGEST: Duration = Duration::from_secs(2); // longest pause
+const LONGEST: Duration = Duration::from_secs(2);
 /// Refusals are forgotten after this time without a request.
 const FORGOTTEN: Duration = Duration::from_secs(10);
 /// Greatest number of requests of one certificate that wait for the run. The last of them waits for four of the longest
@@ -51,7 +51,6 @@ impl Pace {
         Some(at - now)
     }
 
-    /// The run has answered a request.
     pub fn answered(&self, name: &Name, is_refused: bool, now: Instant) {
         let mut all = self.lock();
         let Some(own) = all.get_mut(name) else { return };
@@ -65,7 +64,6 @@ impl Pace {
     }
 }
 
-/// The pause after so many refusals.
 fn pause(refusals: u32) -> Duration {
     let Some(doublings) = refusals.checked_sub(1) else { return Duration::ZERO };
     SHORTEST.saturating_mul(2_u32.saturating_pow(doublings)).min(LONGEST)

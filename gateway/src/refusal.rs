@@ -12,12 +12,11 @@ const ABSENT: &str = "absent ";
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    Refused(String), // the run has refused it
+    Refused(String),
     Absent(String), // there is no run, or no gateway
 }
 
 impl Refusal {
-    /// The answer that opens a claim.
     #[must_use]
     pub const fn clock_word(clock: ClockKind) -> &'static str {
         match clock {

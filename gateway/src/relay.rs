@@ -222,7 +222,6 @@ fn lost(error: io::Error) -> End {
     End::Local(error.to_string())
 }
 
-/// The reason of the other side, in its own words.
 fn ended(error: SessionError) -> End {
     End::Local(error.to_string())
 }

@@ -8,7 +8,6 @@ use neighbours::{
     mailbox::{Mailbox, MailboxError, Place},
 };
 
-/// Mailboxes of one direction, and the last pulse.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct State {
     places: &'static [Place], // their places, in the order of their role
@@ -49,7 +48,6 @@ impl State {
         Ok(mailbox.receive(used)?)
     }
 
-    /// The sample, with the reason of the end if the claim ends.
     #[must_use]
     pub fn encode(&self, end: Option<&str>) -> Vec<u8> {
         let mut bytes = Vec::new();

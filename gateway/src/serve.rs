@@ -192,7 +192,6 @@ impl Gateway {
         Ok(Admitted { line, session, clock })
     }
 
-    /// Declare the keys of a claim, answer the request, and carry samples or lines.
     fn carry(
         &self,
         role: Role,

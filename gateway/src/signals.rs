@@ -7,7 +7,6 @@ use signal_hook::{
     iterator::Signals,
 };
 
-/// Receive signals from now on.
 pub fn receive() -> io::Result<Signals> {
     Signals::new([SIGINT, SIGTERM, SIGHUP])
 }

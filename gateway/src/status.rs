@@ -44,7 +44,6 @@ pub struct Board {
 }
 
 impl Board {
-    /// Publish from now on. Errors: errors of Zenoh.
     pub fn start(session: &Session, cell: &CellKeys, run: PathBuf) -> Result<Self, zenoh::Error> {
         let known: Arc<Mutex<Known>> = Arc::default();
         let publisher = session

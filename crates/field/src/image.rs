@@ -34,7 +34,7 @@ impl Seen {
     }
 }
 
-pub const SAFETY: &str = "safety.ok"; // the input of the safety circuit
+pub const SAFETY: &str = "safety.ok";
 
 pub const LOST_MS: u32 = 1000; // age after which a device is lost, ms: 25 ticks
 

@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use crate::{Attachment, Log};
 
 pub const TABLES: &str = "tables.json.zst"; // name of the attachment with the decision tables
-pub const REASONS: &str = "reasons.json.zst"; // name of the attachment with the reasons
+pub const REASONS: &str = "reasons.json.zst";
 /// Name of the attachment with the first failure and its consequences; only in the log of a failed run.
 pub const FAILURE: &str = "failure.json";
 

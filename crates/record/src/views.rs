@@ -18,13 +18,13 @@ use crate::{
     reader::Log,
 };
 
-pub const JOB_LINES: &str = "/job/lines"; // topic of the lines of the job
-pub const JOB_STATE: &str = "/job/state"; // topic of the progress of the job
-pub const COMMANDER: &str = "/operator/state"; // topic of the source of commands
-pub const CONTROLLER: &str = "/cell/controller"; // topic of the console of the robot controller
+pub const JOB_LINES: &str = "/job/lines";
+pub const JOB_STATE: &str = "/job/state";
+pub const COMMANDER: &str = "/operator/state";
+pub const CONTROLLER: &str = "/cell/controller";
 pub const PARTS: &str = "/cell/parts";
 pub const PLACES: &str = "/cell/places";
-pub const FIELD: &str = "/field"; // topic of the couplers of a run with `--field`
+pub const FIELD: &str = "/field";
 
 messages! {
     /// A line of a job.

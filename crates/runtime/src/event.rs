@@ -39,12 +39,12 @@ pub enum Event {
     Vision(vision::Remark), // remark from the connection to a vision system in another process
     Retries(Retry),  // a failed command is sent again
     OperatorJobFailed(JobFailure), // the job of an operator has failed; the run continues
-    CommandRefused(workstation::Refusal), // a command of the workstation controller is refused
+    CommandRefused(workstation::Refusal),
     CommandFailsCheck(String), // a command does not pass its check, for this reason; Task refuses it
     /// A line of the workstation controller for the cell is refused, for this reason.
     CellLineRefused(String),
     Untrue(Confirmation), // a confirmation that is false in the cell
-    Field(FieldEvent),    // an event at a coupler
+    Field(FieldEvent),
     /// The status of the cell cannot be written for the workstation controller.
     CellStatusUnsent(MailboxError),
     HandedOver,        // the job has transferred the command to the workstation controller

@@ -23,7 +23,7 @@ use crate::{
 
 /// Key of the metadata: the last tick in which a fork is equal to its log.
 pub const FORKED_AFTER: &str = "forked_after";
-pub const CHANGES: &str = "changes"; // key: the changes of a fork
+pub const CHANGES: &str = "changes";
 
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

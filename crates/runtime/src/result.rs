@@ -142,7 +142,7 @@ pub struct RunResult {
     /// Number of commands of all levels that were reported as finished, and the false reports.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<TruthResult>,
-    pub contacts: Vec<Collision>, // prohibited contacts
+    pub contacts: Vec<Collision>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clearance: Option<NearMiss>, // the nearest miss, if a distance was less than 2 in
     pub events: Events,

@@ -15,7 +15,6 @@ const COMMON: &str = "Connection: close\r\nCache-Control: no-store\r\nX-Content-
                       Content-Security-Policy: default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; \
                       base-uri 'none'; frame-ancestors 'none'\r\n";
 
-/// Why a request is refused: the status, and a sentence for the user.
 pub type Refusal = (&'static str, String);
 
 pub const BAD: &str = "400 Bad Request";

@@ -13,7 +13,7 @@ const CONNECTIONS: usize = 64; // greatest number of connections without a login
 const OF_ADDRESS: usize = 8;
 const TRIES: u32 = 5; // failed tries of an address at once, and the time after which it may try once more
 const AGAIN: Duration = Duration::from_secs(30);
-const ALL_TRIES: u32 = 30; // the same of all addresses
+const ALL_TRIES: u32 = 30;
 const ALL_AGAIN: Duration = Duration::from_secs(2);
 const ADDRESSES: usize = 1024; // greatest number of addresses whose failed tries are remembered
 

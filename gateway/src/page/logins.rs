@@ -27,7 +27,6 @@ pub struct Login {
 }
 
 impl Login {
-    /// True if the login has expired, or was ended.
     #[must_use]
     pub fn is_over(&self, now: Instant) -> bool {
         self.is_over.load(Ordering::Acquire) || now >= self.until

@@ -238,7 +238,6 @@ pub fn add(path: &Path, name: &PersonName, role: Role) -> Result<String, PeopleE
     Ok(secret)
 }
 
-/// Removes a person from a file.
 pub fn remove(path: &Path, name: &PersonName) -> Result<(), PeopleError> {
     let failed = |source| PeopleError::File { path: path.to_owned(), source };
     if People::load(path)?.named(name).is_none() {

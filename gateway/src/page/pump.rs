@@ -29,7 +29,7 @@ pub enum Ended {
     ByRun,
     ByLogin, // the login has ended: logged out, removed, expired, or the gateway ends
     Stalled, // the browser has read nothing for too long
-    Failed(io::Error), // the line has failed
+    Failed(io::Error),
 }
 
 impl From<io::Error> for Ended {

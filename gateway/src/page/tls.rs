@@ -47,7 +47,6 @@ pub struct Tls {
 }
 
 impl Tls {
-    /// A connection whose handshake follows.
     pub fn new(socket: TcpStream, config: Arc<ServerConfig>) -> io::Result<Self> {
         socket.set_nonblocking(true)?;
         socket.set_nodelay(true)?;

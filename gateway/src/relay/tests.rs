@@ -16,7 +16,6 @@ use super::*;
 
 const ROLE: Role = Role::Workstation;
 
-/// Both sides of a session that is open.
 fn open(clock: ClockKind) -> (Session, Session) {
     let now = Instant::now();
     let (mut controller, mut neighbour) = (Session::controller(clock, now), Session::neighbour(ROLE, now));

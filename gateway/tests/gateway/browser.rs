@@ -24,7 +24,6 @@ const REQUEST: u32 = 9; // the service that takes any line of an operator
 
 pub type Stream = StreamOwned<ClientConnection, TcpStream>;
 
-/// A browser, and the cookie of its login.
 pub struct Browser {
     config: Arc<ClientConfig>,
     pub port: u16, // where it connects, which may be a line that can be cut
@@ -41,7 +40,6 @@ pub struct Answer {
 }
 
 impl Browser {
-    /// A browser that trusts the authority of a cell.
     pub fn new(keys: &Path, port: u16) -> Self {
         Self::from(keys, port, HERE)
     }
@@ -62,7 +60,6 @@ impl Browser {
         Ok(StreamOwned::new(session, tcp))
     }
 
-    /// Sends bytes, and reads all that follow.
     pub fn exchange(&self, bytes: &[u8]) -> Answer {
         let mut stream = self.tls().unwrap();
         stream.write_all(bytes).unwrap();
@@ -215,7 +212,6 @@ impl Live {
         has_time
     }
 
-    /// Time until the connection has ended.
     pub fn end(&mut self) -> Duration {
         let began = Instant::now();
         while self.socket.read().is_ok() {}

@@ -9,7 +9,6 @@ use std::{
 
 use crate::shop::{CELL, Shop, make_keys, within};
 
-/// Connects with openssl; returns all that it prints.
 pub fn openssl(shop: &Shop, arguments: &[&str]) -> String {
     let mut command = Command::new("openssl");
     command.args(["s_client", "-connect", &format!("127.0.0.1:{}", shop.port)]);

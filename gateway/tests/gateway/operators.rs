@@ -12,7 +12,6 @@ use neighbours::line::{Role, Session, session::Event};
 
 use crate::shop::{Shop, program, within};
 
-/// An operator's session behind a gateway.
 struct Operator {
     reader: BufReader<UnixStream>,
     number: u32,

@@ -31,7 +31,6 @@ pub fn program(name: &str) -> PathBuf {
     path
 }
 
-/// A child process that ends with its owner; its standard error is in a file.
 pub struct Process {
     pub child: Child,
     errors: PathBuf,
@@ -196,7 +195,6 @@ impl Shop {
         format!("unix:{}", self.path(&format!("{name}.sock")).display())
     }
 
-    /// A program of the workspace that connects to a socket.
     pub fn neighbour(&self, role: &str, network: &str, arguments: &[&str]) -> Process {
         let mut command = Command::new(program("rcs-neighbour"));
         command.args([role, "--network", network, "--wait", "20"]).args(arguments).stdout(Stdio::null());
@@ -204,7 +202,6 @@ impl Shop {
         Process::start(&mut command, self.path(&format!("neighbour-{role}.err")))
     }
 
-    /// A workstation controller at the socket of a certificate, or of the run.
     pub fn hwsc(&self, name: &str) -> Result<Hwsc, String> {
         Hwsc::connect(&self.path(&format!("{name}.sock")))
     }
@@ -235,7 +232,6 @@ pub struct Hwsc {
 }
 
 impl Hwsc {
-    /// Connect, and read up to the first pulse.
     pub fn connect(path: &Path) -> Result<Self, String> {
         let stream = UnixStream::connect(path).map_err(|error| error.to_string())?;
         stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
@@ -278,7 +274,6 @@ impl Hwsc {
         self.stream.write_all(&bytes).map_err(|error| error.to_string())
     }
 
-    /// Answer the last pulse, and read up to the next one.
     pub fn tick(&mut self) -> Result<u64, String> {
         self.session.pulse(self.tick, Instant::now());
         self.flush()?;
@@ -321,7 +316,6 @@ impl Hwsc {
         Ok(())
     }
 
-    /// True if the last command has this status.
     pub fn is_reported(&self, report: &str) -> bool {
         let status = self.status();
         status.echo == self.number && status.report.to_string() == report

@@ -33,7 +33,7 @@ pub enum Condition {
     Stopped, // unable to move, because a person or a switch stops the robot
     EStop,
     Fault,
-    Finished, // the run has finished its job
+    Finished,
     Ended,
     NoData,
 }

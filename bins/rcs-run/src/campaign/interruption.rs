@@ -31,11 +31,11 @@ pub enum Kind {
     None,
     Pause,
     PauseTwice,
-    Refused,       // a command with a misspelt location
-    Replaced,      // another valid command, then the interrupted command again
-    AnswerLost,    // one answer of the robot controller is lost
-    AnswerLate,    // one answer of the robot controller is late
-    AnswerDamaged, // one answer of the robot controller is damaged
+    Refused,  // a command with a misspelt location
+    Replaced, // another valid command, then the interrupted command again
+    AnswerLost,
+    AnswerLate,
+    AnswerDamaged,
     Hold,
     Nudge,           // the joystick moves the robot by 0.2 in and back
     Away,            // the joystick moves the robot 3 in away and back

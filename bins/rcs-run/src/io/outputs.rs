@@ -14,7 +14,7 @@ use super::{
     tally::{OutputTally, Verdict},
 };
 
-const ON_FOR: Duration = Duration::from_secs(1); // time for which an output is on
+const ON_FOR: Duration = Duration::from_secs(1);
 const OFF_FOR: Duration = Duration::from_millis(100);
 /// Parts of names of outputs that open, release or start something.
 const RISKY: [&str; 6] = ["open", "unlock", "release", "vent", "start", "order"];

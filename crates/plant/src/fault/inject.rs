@@ -46,7 +46,7 @@ pub struct FaultResult {
     /// Its number in the file, from 1.
     pub number: usize,
     pub text: String,
-    pub times: u64, // number of times that it has begun
+    pub times: u64,
     pub first: u64, // the tick in which it first began
     pub last: u64,  // the last tick in which it was present
 }
@@ -54,9 +54,9 @@ pub struct FaultResult {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Delivery {
     pub missing: bool,
-    pub instead: Option<String>, // the part that is delivered instead
-    pub aside: [f64; 2],         // offset from its place along world X and Y, in
-    pub angle: f64,              // rotation about the tool's X, degrees
+    pub instead: Option<String>,
+    pub aside: [f64; 2], // offset from its place along world X and Y, in
+    pub angle: f64,      // rotation about the tool's X, degrees
 }
 
 #[derive(Clone, Debug, PartialEq)]

@@ -24,13 +24,13 @@ use super::kept::{doubted, resumed};
 use crate::layout;
 
 pub const MAGIC: [u8; 8] = *b"RCSJRNL\0"; // first bytes of every journal
-const VERSION: u32 = 1; // version of the format
+const VERSION: u32 = 1;
 const BLOCK: usize = 4096; // unit of the parts of a journal, bytes: no two slots share a block of the disk
 const HEAD: usize = BLOCK; // bytes of the head
-pub const SLOTS: usize = 8; // slots of a journal
+pub const SLOTS: usize = 8;
 pub const SLOT: usize = (8 + Entry::SIZE + 8).div_ceil(BLOCK) * BLOCK; // bytes of a slot
 pub const LENGTH: usize = HEAD + SLOTS * SLOT; // bytes of a journal
-pub const FIRST: u64 = 1; // number of the first entry
+pub const FIRST: u64 = 1;
 const HEAD_HASH: usize = HEAD - 8; // position of the hash in the head
 const IDENTITY: usize = 28; // position of the identity in the head
 

@@ -56,9 +56,9 @@ use crate::{judge, neighbours::Neighbours};
 pub const A_TICK: usize = 16; // largest number of requests executed in a tick; others wait for the next one
 
 pub struct Operator {
-    hand: Joystick,       // the operators' joystick box; the lines of the job have another one
-    shown: JoystickBox,   // state of that box in the next tick
-    terminals: Terminals, // entries at the terminals of the boards
+    hand: Joystick,     // the operators' joystick box; the lines of the job have another one
+    shown: JoystickBox, // state of that box in the next tick
+    terminals: Terminals,
     later: Option<Later>, // part of a request that the run must execute
     /// A request that waits until the commands control the robot again, and the tick in which it arrived.
     awaiting: Option<(Input, Tick)>,

@@ -24,7 +24,7 @@ pub enum Request {
     Field,
     Point(String),
     Knowledge,
-    Release(String),  // release a tripped device
+    Release(String),
     MakeSafe(String), // make the outputs of a device safe until it is released
     Stop,
     Go,
@@ -36,8 +36,8 @@ pub enum Request {
     Command(String, HwsCommand),
     Box(BoxAction), // an action at the operator's own joystick box
     Terminal(Entry),
-    Load(BlockNumber), // load a block of the data directory
-    Play(String),      // play a job of the data directory instead of the rest of the present one
+    Load(BlockNumber),
+    Play(String), // play a job of the data directory instead of the rest of the present one
     /// Take over from a workstation controller in another process.
     StandAlone {
         now: bool, // also in the middle of a command

@@ -35,7 +35,7 @@ const PING: Duration = Duration::from_millis(500);
 const PING_OPERATOR: Duration = ALIVE;
 /// Greatest age of a request. The sender of an older one no longer waits, or its connection is stalled.
 const REQUEST_AGE: Duration = Duration::from_secs(2);
-const CLOSING_LIMIT: Duration = Duration::from_millis(500); // time limit for closing a connection
+const CLOSING_LIMIT: Duration = Duration::from_millis(500);
 /// Time after a disconnection during which the client can still read its reason. The feed meanwhile continues.
 const LATE_READER: Duration = Duration::from_secs(30);
 /// Interval between reports of the number of dropped messages.
@@ -81,7 +81,7 @@ pub struct Client {
     patience: Duration,
     silence: Silence,
     notices: Option<Notices>, // receives the reason when the server disconnects the client
-    began: Instant,           // time at which the session began
+    began: Instant,
     /// Number and time of the last ping. The number is the time of the ping, ms since the session began.
     ping: (u64, Instant),
     pong: (u64, Instant), // number of the last answered ping, and the time of its answer

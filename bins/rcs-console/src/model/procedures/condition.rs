@@ -75,9 +75,9 @@ pub enum Condition {
     HandCalibrated,
     TableAt(i32), // the rotary table is calibrated and at this angle, 0.1 degree
     DataSystem(Connection),
-    PedestalAnswers,        // the pedestal is a separate system, and answers
-    VisionAnswers,          // the last request to the vision system was answered
-    JobWaits,               // the job waits for the operator
+    PedestalAnswers, // the pedestal is a separate system, and answers
+    VisionAnswers,   // the last request to the vision system was answered
+    JobWaits,
     Commands(&'static str), // the run's status line names this source of commands
     Taken,
 }
