@@ -1,7 +1,7 @@
 //! Zenoh's configuration, set here and nowhere else: no file can weaken it.
 //!
-//! The gateway is a peer that listens at one TLS endpoint; neighbours are clients, because a client reports at once
-//! that it cannot connect, while a peer retries silently forever. The access control denies by default, on both sides.
+//! The gateway is a peer at one TLS endpoint; neighbours are clients, because a client reports at once that it cannot
+//! connect, while a peer retries silently. The access control denies by default, on both sides.
 
 use serde_json::{Value, json};
 use zenoh::Config;

@@ -1,7 +1,7 @@
 //! What monitors read: `status/run` five times a second, and the image of each mailbox whenever it changes.
 //!
-//! The source is the mailboxes that pass through this gateway. It costs the run nothing, and shows no more than a
-//! neighbour sees: `status/run` has the state of Task while a workstation controller is connected through this gateway.
+//! The source is the mailboxes that pass through this gateway, at no cost for the run: `status/run` has the state of
+//! Task while a workstation controller is connected through this gateway.
 
 use std::{
     collections::BTreeMap,

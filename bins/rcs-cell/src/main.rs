@@ -1,8 +1,8 @@
 //! `rcs-cell`: the simulated T3 controller behind a pseudo-terminal, a gateway to an EGM robot, an emulated EGM robot,
 //! or the whole simulated cell behind Modbus couplers, EGM and vision ([`mod@station`]).
 //!
-//! Any DEPC host can open the terminal like the serial line of a Cincinnati Milacron T3: start-up at the console as in
-//! IV.3.3, the DEPC function of appendix A on the line, 9600 baud.
+//! Any DEPC host can open the terminal like a T3's serial line: start-up at the console as in IV.3.3, the DEPC
+//! function of appendix A, 9600 baud.
 //!
 //! ```text
 //!   console (standard input) ──► plant::t3: start-up, program, DEPC, arm
@@ -10,8 +10,8 @@
 //!                               line: bytes in time ◄──► pty ◄──► host
 //! ```
 //!
-//! Controller and arm are those of the simulated cell, [`plant::t3`]. They, [`mod@line`], [`auto`] and [`console`]
-//! neither read a clock nor do I/O; [`shell`] and [`pty`] do that for them.
+//! Controller and arm are [`plant::t3`]. They, [`mod@line`], [`auto`] and [`console`] neither read a clock nor do I/O;
+//! [`shell`] and [`pty`] do.
 
 mod auto;
 mod cli;

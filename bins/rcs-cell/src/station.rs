@@ -6,9 +6,9 @@
 //!           ──vision──────► camera, in its own thread ───────────┘
 //! ```
 //!
-//! The cell advances when its outputs have been read, and its sensors are in the registers at once: they are as if the
-//! tick were over. So the station adds one tick at most, and none if a controller writes and reads between two ticks.
-//! Lines of standard input are those of jobs without `**`: they are what a person does at the cell.
+//! The cell advances when its outputs have been read, and its sensors are in the registers at once. So the station
+//! adds one tick at most, and none if a controller writes and reads between two ticks. Lines of standard input are
+//! those of jobs without `**`: what a person does at the cell.
 
 mod camera;
 mod robot;

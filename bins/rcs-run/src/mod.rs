@@ -1,9 +1,8 @@
 //! `rcs-run`: the RCS-II/T3 controller with its simulated cell.
 //!
-//! [`cli`] is the command line, and each subcommand is a module. `run` carries out a run of the library `runtime`; with
-//! `--boards split` several processes share the controller's work (`board`). `link_test` tests the line to a robot.
-//! [`campaign`] interrupts a job at many ticks, [`new`] makes data for a new part, tool, place or tray. The other
-//! subcommands check and print task data and decision tables, or remove the remains of killed runs.
+//! [`cli`] is the command line; each subcommand is a module. `run` carries out a run of the library `runtime`; with
+//! `--boards split` processes of `board` share the work. `link_test` tests the line to a robot, [`campaign`]
+//! interrupts a job at many ticks, [`new`] makes data for a new part, tool, place or tray.
 
 #![deny(unsafe_code)]
 

@@ -1,11 +1,10 @@
 //! The account of a run: its first failure and the failures that followed, in one form for all programs.
 //!
-//! A failed run often has several failures: the robot collides with the tray, the part slips in the fingers, and
-//! 5,000 ticks later a process reports an empty gripper. [`Account`] orders them. The first one is the cause in the
-//! world; the others followed.
+//! The robot collides with the tray, the part slips in the fingers, and 5,000 ticks later a process reports an empty
+//! gripper: [`Account`] orders such failures. The first one is the cause in the world; the others followed.
 //!
-//! The run makes its account at its end and attaches it to the log. A live view, or the log of a killed run, has no
-//! account: there [`Alarms`] collects the same failures from the visible events.
+//! The run attaches its account to the log at its end. For a live view, or the log of a killed run, [`Alarms`]
+//! collects the same failures from the visible events.
 
 use std::{collections::BTreeMap, fmt, iter};
 

@@ -1,11 +1,10 @@
 //! The ticks of a ladder, with common memory, digest and first failure.
 //!
-//! Common memory has two halves, selected by tick parity: the processes read one and write the other, so their order
-//! within a tick has no effect. After every tick the course adds the buffers to the digest and checks the statuses
-//! for the first sign of a failure.
+//! Common memory has two halves, selected by tick parity: processes read one and write the other, so their order has
+//! no effect. After every tick the course adds the buffers to the digest and checks the statuses for a failure.
 //!
-//! A [`Course`] reads no clock and does not allocate after its creation. A clone continues from the same tick. The
-//! `Runner` of the crate `executive` times a course and publishes it; `rcs-run campaign` forks it.
+//! A [`Course`] reads no clock and does not allocate after its creation. A clone continues from the same tick.
+//! `executive::Runner` times and publishes a course; `rcs-run campaign` forks it.
 
 use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::ProcessId;
@@ -17,8 +16,8 @@ pub trait Levels<Data: ?Sized> {
     type Error;
 
     /// One tick of all processes: read `before` and `external`, write all of `after`, and call `observe` after each
-    /// stage like [`Ladder::step_observed`](levels::ladder::Ladder::step_observed). Time outside the stages is
-    /// attributed to the executive. Fails if external processes did not take part. The caller must then stop.
+    /// stage like [`Ladder::step_observed`](levels::ladder::Ladder::step_observed). Fails if external processes did
+    /// not take part; stop then.
     fn step(
         &mut self,
         tick: Tick,

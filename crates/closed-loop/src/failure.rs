@@ -1,11 +1,11 @@
 //! Explains a failure in one sentence: process, decision table and row.
 //!
 //! A reason travels up the ladder unchanged, one level per tick, so its origin is the lowest process that reports the
-//! reason Task received. By then the lower processes may be doing something else. Therefore [`Watch`] stores, per
-//! process, common memory of the tick in which the present report began.
+//! reason Task received. As lower processes may have continued since, [`Watch`] stores, per process, common memory of
+//! the tick in which the present report began.
 //!
-//! The report of a process is often not the first failure. [`Account`](crate::account::Account) orders it with
-//! collisions, lost parts and emergency stops.
+//! [`Account`](crate::account::Account) orders reports with collisions, lost parts and emergency stops, which often
+//! precede them.
 
 use interfaces::{CommonMemory, Detail, ExternalInputs, Fault, Header, HwsCommand, Reason};
 use levels::ladder::{PROCESS_COUNT, ProcessId, ProcessInfo};

@@ -5,9 +5,9 @@
 //!            inputs  ◄── session ◄─32 ms── coupler ◄── sensors of the cell
 //! ```
 //!
-//! All words of mapped groups pass through mapping, session and an emulated coupler with its watchdog; other words
-//! bypass them. The exchanges take place 1 ms after and 8 ms before a slot, as with a real device, so the couplers
-//! add no delay. A fault `field-cut` of the cell cuts the connection of a device.
+//! Words of mapped groups pass through mapping, session and an emulated coupler with its watchdog. The exchanges take
+//! place 1 ms after and 8 ms before a slot, as with a real device, so the couplers add no delay. A fault `field-cut`
+//! of the cell cuts the connection of a device.
 
 mod desk;
 mod event;

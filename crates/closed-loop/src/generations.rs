@@ -1,8 +1,8 @@
 //! Generations of the task data: blocks that are loaded while the robot runs (docs/design/ownership.md "Reload").
 //!
-//! A reload is built and checked outside the tick. It takes effect as a whole between two ticks and only between
-//! commands, so a command keeps its records. Existing names keep their record numbers in the next generation.
-//! Therefore the states that processes keep between commands (the robot's position, the held object) remain valid.
+//! A reload is built and checked outside the tick. It takes effect as a whole between two ticks and between commands,
+//! so a command keeps its records. Existing names keep their record numbers, so the states that processes keep between
+//! commands (the robot's position, the held object) remain valid.
 
 use std::{collections::VecDeque, sync::Arc};
 

@@ -1,9 +1,8 @@
 //! A run as a value: control processes, cell, line, mailboxes and Data System, without clock, thread, file or
 //! network.
 //!
-//! A [`ClosedLoop`] can be cloned; both copies continue bit for bit alike, even in different threads. A program
-//! around it waits for the next tick, supplies the external inputs ([`Given`]), and sends the outputs. The loop
-//! defines the order within a tick:
+//! Copies of a [`ClosedLoop`] continue bit for bit alike, even in different threads. A program waits for the next
+//! tick, supplies the external inputs ([`Given`]), and sends the outputs. The order within a tick:
 //!
 //! ```text
 //!   decide(given) ──► the processes run on the inputs       bytes leave for the robot when it returns

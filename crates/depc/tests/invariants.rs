@@ -1,6 +1,5 @@
-//! Ten thousand seeded fault plans, of all kinds and with any number of faults in a frame. Always: no step exceeds the
-//! limits; the host reports a stopped controller; once the line is repaired and the operator has answered, the goal is
-//! reached.
+//! Ten thousand seeded plans of any faults. Always: no step exceeds the limits; the host reports a stopped controller;
+//! once the line is repaired and the operator has answered, the goal is reached.
 //!
 //! Unless the line deceives one end: no command is executed twice or lost silently, every report is true, and the
 //! limits give no warning. A checksum by exclusive or does not detect two changes of the same bit, ACK, NAK, cancel

@@ -1,8 +1,8 @@
 //! An emulated BK9000, and a controller that switches its outputs: two programs to test networks and other programs.
 //!
-//! `coupler station 127.0.0.1:1502` prints the outputs when they change, and the greatest age of an image that was
-//! carried out. `coupler controller 127.0.0.1:1502 60` runs for 60 s with an output on, releases the device when it is
-//! tripped, and prints its states. Both must run on one machine: the images hold its time.
+//! `coupler station 127.0.0.1:1502` prints changes of the outputs, and the greatest age of an image that was carried
+//! out. `coupler controller 127.0.0.1:1502 60` runs for 60 s with an output on, releases a tripped device, and prints
+//! its states. Both must run on one machine: the images hold its time.
 //!
 //! `cargo run --release -p executive --example coupler -- station 127.0.0.1:1502`
 

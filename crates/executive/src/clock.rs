@@ -1,17 +1,15 @@
 //! The times at which ticks run (docs/design/tick.md "Grid").
 //!
-//! The controller itself has no clock. [`Clock::Fast`] begins a tick at once: the simulated cell advances 40 ms a tick,
-//! however long that takes. [`Clock::Real`] begins ticks on an absolute 40 ms [`Grid`]: slot `n` starts 40 ms x `n`
-//! after the start of the run; a late wake-up does not shift the following slots; a slot whose start has passed is
-//! skipped and counted. This holds at every wake-up:
+//! The controller itself has no clock. [`Clock::Fast`] begins a tick at once; the simulated cell advances 40 ms a
+//! tick. [`Clock::Real`] uses an absolute [`Grid`]: slot `n` starts 40 ms x `n` after the start of the run; a late
+//! wake-up does not shift later slots; a slot whose start has passed is skipped and counted. At every wake-up:
 //!
 //! ```text
 //! ticks run + slots skipped = time elapsed / 40 ms    (rounded down)
 //! ```
 //!
-//! The system wakes a sleeping thread some ten microseconds late, and within 40 ms other programs evict its data from
-//! the caches. A caller that must be ready when a slot begins calls [`Grid::wake_early`], warms up in the remaining
-//! time, and then calls [`Grid::wait`], which stays awake until the slot.
+//! The system wakes a thread some ten microseconds late, and within 40 ms other programs evict its data from the
+//! caches. So call [`Grid::wake_early`], warm up, and then [`Grid::wait`], which stays awake until the slot.
 
 use std::time::Duration;
 
@@ -23,9 +21,8 @@ use rustix::{
 };
 
 pub const SLOT: Duration = Duration::from_millis(TICK_MS);
-/// Time before a slot at which [`Grid::wake_early`] wakes. It is long enough for a late wake-up and a warm-up of the
-/// tick with cold caches (some 0.1 ms), and short compared with a slot: it keeps a core awake for at most 1.25 % of the
-/// time.
+/// Lead of [`Grid::wake_early`]: enough for a late wake-up and a warm-up with cold caches (some 0.1 ms), and short
+/// compared with a slot: a core stays awake for at most 1.25 % of the time.
 pub const LEAD: Duration = Duration::from_micros(500);
 
 /// Source of time; tests implement their own.

@@ -1,9 +1,8 @@
 //! Requests real-time operation from the system, and reports what the system refused.
 //!
-//! The requests are: no page faults in a tick (`mlockall`, and a stack that has been touched), priority of the tick
-//! thread over everything that is not real time (`SCHED_FIFO`), one fixed core, and no deep idle states of the cores
-//! (`/dev/cpu_dma_latency`). Correct results need none of them, only ticks on time do, so a refusal is a note in the
-//! verdict and not an error.
+//! The requests: no page faults in a tick (`mlockall`, a touched stack), priority of the tick thread (`SCHED_FIFO`),
+//! one fixed core, and no deep idle states (`/dev/cpu_dma_latency`). Only ticks on time need them, not correct
+//! results, so a refusal is a note in the verdict and not an error.
 //!
 //! Threads inherit policy and core: start log and progress threads before calling [`acquire`].
 

@@ -7,10 +7,9 @@
 //!                 └──────────┴──────────┴──► failed: fault, `while` lost, too late, tripped device
 //! ```
 //!
-//! An input that is late neither fulfils nor breaks a condition. `done` counts only after `begun`, after it was seen
-//! off, or, without `begun`, after it has held for [`SETTLE_TICKS`]: an input left on by the last cycle ends no line.
-//! A line that was interrupted after it had begun continues without a second start. The state has no clock: one call
-//! of [`Lines::step`] is one tick.
+//! A late input neither fulfils nor breaks a condition. `done` counts only after `begun`, after it was seen off, or,
+//! without `begun`, after [`SETTLE_TICKS`]: an input left on by the last cycle ends no line. A line interrupted after
+//! it had begun continues without a second start. One call of [`Lines::step`] is one tick.
 
 mod failure;
 

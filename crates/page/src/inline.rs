@@ -1,9 +1,9 @@
 //! Joins the sources of the page into one HTML file.
 //!
-//! Modules cannot be imported from `file://`, so all of them become one script: each module is a function that returns
-//! its exports, in the order in which they depend on each other. The sources keep to a form that needs no parser: an
-//! import names its bindings in braces and a file beside it, a declaration is exported where it is made, and nothing
-//! that is exported changes later. A source that does not is refused by [`bundle`], and so by the tests.
+//! Modules cannot be imported from `file://`, so they become one script: each is a function that returns its exports,
+//! in the order of dependence. The sources keep to a form that needs no parser: an import names its bindings in braces
+//! and a file of the same directory, a declaration is exported where it is made, and no export changes later.
+//! [`bundle`] refuses other sources, and so do the tests.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,13 +1,12 @@
 //! The programmable vise: a fixed jaw, a movable jaw, and the clamped part.
 //!
-//! Both jaws have steps, one for each family of parts. A program of the vise is such a step with its openings. Openings
-//! are measured between the clamping faces of the step of the selected program, as for the operator; internally the jaw
-//! position is the distance of the inner faces. A part stops the jaw in any step.
+//! Both jaws have steps, one for each family of parts; a program is a step with its openings. Openings are measured
+//! between the clamping faces of that step, as for the operator; internally the jaw position is the distance of the
+//! inner faces. A part stops the jaw in any step.
 //!
-//! The jaw moves at its speed to an opening. When it reaches a part it pushes the part along, flush with its
-//! face, and stops when the part touches the fixed face. From then on, closing force and friction hold the
-//! part. The gripper cannot resist: 500 lb against at most twice the finger force. The jaws push aside a part
-//! that is still in the fingers.
+//! The jaw moves at its speed. It pushes a part along, flush with its face, and stops when the part touches the fixed
+//! face. From then on, closing force and friction hold the part. The gripper cannot resist: 500 lb against at most
+//! twice the finger force. The jaws push aside a part that is still in the fingers.
 
 use geometry::frame::{Frame, Vector as Inches};
 use rapier3d_f64::prelude::*;

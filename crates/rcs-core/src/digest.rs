@@ -1,12 +1,12 @@
 //! The digest of a run: 64 bits over the byte images of all output buffers of all ticks in process order.
 //!
 //! Each step mixes eight bytes as a little-endian word: exclusive or, multiplication, and folding of the upper half
-//! into the lower, which a multiplication does not reach. A step is a bijection of the hash, so no later step can hide
-//! a difference. The digest detects accidental differences, not manipulation.
+//! into the lower, which a multiplication does not reach. It is a bijection of the hash, so no later step can hide a
+//! difference. The digest detects accidental differences, not manipulation.
 //!
-//! Each image is hashed separately, its words distributed over four lanes, whose multiplications a processor overlaps.
-//! The digest chains these hashes, so several processors can compute them. Equal runs have equal digests on every
-//! machine and with any distribution over boards.
+//! Each image is hashed separately, its words over four lanes, whose multiplications a processor overlaps. Several
+//! processors can compute the hashes that the digest chains. Equal runs have equal digests on every machine and with
+//! any boards.
 
 use crate::{Plain, plain::Writer};
 

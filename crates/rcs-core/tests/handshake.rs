@@ -1,7 +1,7 @@
-//! Exhaustive search of the handshake between [`Commander`] and [`Receiver`], breadth first. The model has two buffers
-//! with one writer each. In every tick the commander may restart and may send a command, up to five; the receiver may
-//! step, restart, be held or be silent, and may finish its command. Either may read values that are one or two ticks
-//! old. A restart loses the state of the process, but not its output buffer.
+//! Exhaustive search of the handshake between [`Commander`] and [`Receiver`], breadth first. In every tick the
+//! commander may restart and may send a command, up to five; the receiver may step, restart, be held or be silent, and
+//! may finish its command. Either may read values that are one or two ticks old. A restart loses the state of the
+//! process, but not its output buffer.
 //!
 //! Commands are distinguished by *content*, which the code does not see. Ages replace ticks, up to the largest that
 //! the code distinguishes, so the search is finite.

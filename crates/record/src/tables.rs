@@ -1,8 +1,7 @@
 //! The decision tables by which a log is explained: its own ones, or those of this program.
 //!
-//! A log names rows by their numbers. If a row was added since, the numbers of this program mean other rows. So the
-//! tables attached to the log ([`crate::explanation`]) are read back. A program that reads a log ends soon, so they are
-//! kept to its end, as its own tables are.
+//! A log names rows by numbers, which mean other rows once a row was added. So the tables attached to the log
+//! ([`crate::explanation`]) are read back. A program that reads a log ends soon, so they are kept to its end.
 
 use levels::ladder::{Ladder, PROCESS_COUNT, ProcessInfo};
 use rcs_core::{

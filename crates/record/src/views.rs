@@ -1,5 +1,5 @@
-//! The state of a run outside the buffers of the processes: the job, the commander, the robot controller, the
-//! parts and the places of the cell. Each has a channel with one message type.
+//! The state of a run outside the buffers: job, commander, robot controller, parts and places of the cell. Each has a
+//! channel.
 //!
 //! A message has the whole state, so that a reader needs only the last one. It is written when the state
 //! changes, and repeated with the buffers.

@@ -13,9 +13,9 @@
 //! # Ok::<(), runtime::StartError>(())
 //! ```
 //!
-//! The order in a tick: receive bytes from a serial line, run the controller (with measured time and allocations), send
-//! bytes over the line, pass the tick to the log, advance the cell, run the workstation controller. The physics of the
-//! cell allocates and takes most of the time; neither is attributed to the controller.
+//! A tick: receive bytes from a serial line, run the controller (with measured time and allocations), send bytes, pass
+//! the tick to the log, advance the cell, run the workstation controller. Time and allocations of the cell's physics
+//! are not attributed to the controller.
 
 pub mod agreement;
 mod as_text;

@@ -1,9 +1,8 @@
 //! Repeats a recorded run, with the configuration from its log.
 //!
-//! A log contains all data on which a run with the simulated robot depends: task data, job and the blocks that
-//! it loads, cell description, faults, and in its metadata seed, retries and limits. [`unpack`] writes the
-//! files into a directory and returns the configuration. The clock is always the fast one: if the run missed no
-//! slots, the repetition is equal bit for bit.
+//! A log contains all that a run with the simulated robot depends on: task data, job and the blocks that it loads,
+//! cell description, faults; seed, retries and limits. [`unpack`] writes the files and returns the configuration. The
+//! clock is the fast one: if the run missed no slots, the repetition is equal bit for bit.
 
 use std::{
     collections::BTreeMap,

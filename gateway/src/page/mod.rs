@@ -4,8 +4,8 @@
 //!   browser == TLS 1.3, cookie of a login == rcs-gateway page -- Unix, person and role -- rcs-run
 //! ```
 //!
-//! The gateway checks who connects, and tells the run the person's name and role. It passes the bytes of the page and
-//! of the WebSocket as they are. The run gives no right to a viewer, and treats an operator like any other.
+//! The gateway checks who connects, tells the run name and role, and passes bytes on as they are. The run gives no
+//! right to a viewer, and treats an operator like any other.
 
 pub mod forms;
 pub mod http;

@@ -1,9 +1,8 @@
 //! The inputs of the devices during a command: the end of a causal chain.
 //!
-//! A switch is listed with its value and the ticks of its changes, a converter with its range. One line lists
-//! all inputs that never changed; absent devices are left out. For a guarded move, the evidence is its sensor:
-//! the condition that would have ended the move, the reading nearest to it, and the distance that the robot
-//! moved meanwhile.
+//! A switch has its value and the ticks of its changes, a converter its range. One line lists all inputs that never
+//! changed; absent devices are left out. A guarded move has its sensor: the condition that would have ended the move,
+//! the nearest reading, and the distance that the robot moved meanwhile.
 
 use geometry::pose::WireFrame;
 use interfaces::{ExternalInputs, prim::PrimVerb};

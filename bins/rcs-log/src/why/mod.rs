@@ -1,12 +1,12 @@
 //! `rcs-log why`: explains a failure, or what each level did in a tick, and by which row.
 //!
-//! The explanation begins with the first failure in the world ([`world`]): a contact, a lost part, a warning of
-//! the robot controller, or a line of the workstation that could not be executed. A failure is explained as a
-//! chain of causes over the ticks ([`closed_loop::chain`]): the commands that led to the failed process, each with its
-//! row; the inputs of the devices during the command ([`evidence`]); events in the cell; the first cause; and the
-//! reports up to Task. All statements come from buffers, rows and tables of the log, without guesses.
+//! The explanation begins with the first failure in the world ([`world`]): a contact, a lost part, a warning of the
+//! robot controller, or a line of the workstation that could not be executed. A failure is a chain of causes
+//! ([`closed_loop::chain`]): the commands that led to the failed process, with their rows; the inputs of the devices
+//! meanwhile ([`evidence`]); events in the cell; the first cause; and the reports up to Task. All statements come from
+//! the log, without guesses.
 //!
-//! A fault that was injected is a circumstance of a simulated run. It is listed in addition, and is never a cause.
+//! An injected fault is a circumstance of a simulated run, listed in addition, and never a cause.
 
 mod data;
 mod evidence;

@@ -8,9 +8,9 @@
 //!                   interruption ──► PAUSE, the same command, up to three tries ──► next command ──► verdict
 //! ```
 //!
-//! With `--truth`, the interruptions are drawn disturbances of robot and parts ([`truth`]). With `--random`, ticks and
-//! series of interruptions are drawn. A tick of a branch is a tick of a run ([`branch`]); the campaign uses
-//! only the interfaces of the control processes. docs/campaign.md describes the verdicts.
+//! `--truth` draws disturbances of robot and parts ([`truth`]), `--random` ticks and series of interruptions. A tick
+//! of a branch is a tick of a run ([`branch`]); the campaign uses only the interfaces of the control processes. See
+//! docs/campaign.md.
 
 mod arguments;
 mod branch;

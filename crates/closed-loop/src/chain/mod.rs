@@ -1,9 +1,9 @@
-//! What led to a failure, and what it led to: the commands before it, the trace to its first cause, and the reports up
-//! to Task.
+//! The causes and consequences of a failure: the commands before it, the trace to its first cause, the reports up to
+//! Task.
 //!
-//! The trace begins with the process that first reported the reason which Task received. Its row has new conditions:
-//! those that were false in the previous tick. If a process below failed or changed then, the trace continues with it;
-//! else the cause is a device, a limit, or data. From there, the commands are traced upwards.
+//! The trace begins with the process that first reported the reason which Task received. Its row has new conditions.
+//! If a process below failed or changed in the previous tick, the trace continues with it; else the cause is a device,
+//! a limit, or data. From there, the commands are traced upwards.
 
 mod history;
 

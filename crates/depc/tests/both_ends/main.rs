@@ -9,9 +9,8 @@
 //!
 //! In every state: no point is executed twice (without functions: the robot never moves backwards) or skipped, one
 //! command is outstanding, and the host's state is true. From every state, without further faults, the next command is
-//! acknowledged or a stop is reported within a bound, for any action of the operator; with an operator who answers at
-//! once it is acknowledged. `DEPC_FAULTS=3` searches three faults, without Hold; `DEPC_ALL_BITS=1` damages every bit
-//! and byte instead of one per part of a frame.
+//! acknowledged or a stop is reported within a bound; with an operator who answers at once it is acknowledged.
+//! `DEPC_FAULTS=3` searches three faults, without Hold; `DEPC_ALL_BITS=1` damages every bit and byte.
 
 #![expect(clippy::print_stdout, reason = "the figures of a search are printed")]
 

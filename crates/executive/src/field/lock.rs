@@ -1,8 +1,7 @@
 //! One process of this machine at a time writes a device.
 //!
 //! The lock is a name in the abstract namespace of Unix sockets: the system frees it with the process, also after
-//! `kill -9`, and there is no file to remove. It is no protection against other machines, whose writes the session
-//! notices when it reads the outputs back.
+//! `kill -9`. Against other machines, the session notices their writes when it reads the outputs back.
 
 use std::{
     io::{self, ErrorKind},

@@ -1,11 +1,10 @@
 //! Emulator of the workstation controller (HWSC) that plays a job.
 //!
-//! A job is a list of commands for Task, and actions of the workstation (vise, machining) between them. The emulator
-//! first sends PAUSE, like the startup sequence (V.4.1). A command ends when Task answers its number with `finished`,
-//! an action when the workstation is not busy. An unanswered command is sent once more. An error, a lost Task, a fault
-//! of the workstation or a time limit end the job with a [`JobFailure`]. With [`Hwsc::with_retries`] the emulator acts
-//! like an operator after an error: PAUSE and the same command again. During an action of the workstation the operator
-//! may move the robot; the joystick box ends only a command.
+//! A job is a list of commands for Task, and actions of the workstation (vise, machining) between them. The first step
+//! is PAUSE, as in the startup sequence (V.4.1). A command ends when Task answers its number with `finished`, an
+//! action when the workstation is not busy. An unanswered command is sent once more. An error, a lost Task, a fault of
+//! the workstation or a time limit end the job with a [`JobFailure`]; [`Hwsc::with_retries`] first sends PAUSE and the
+//! same command again. The joystick box ends only a command: during an action the operator may move the robot.
 //!
 //! ```text
 //!           PAUSE           command finished, or workstation idle
@@ -16,16 +15,15 @@
 //!                     +---- error, a retry is left ----> PAUSE ----> Sent
 //! ```
 //!
-//! An emergency ([`Workstation::emergency`]) ends the job at once, unless the current or a later line resets it with
-//! `** panel fault-reset`. A command that fails meanwhile is recorded, and the job fails if no later repetition of it
-//! has finished. A command whose line ends with `expect error` must fail.
+//! An emergency ([`Workstation::emergency`]) ends the job, unless this or a later line is `** panel fault-reset`. A
+//! command that fails meanwhile is recorded, and the job fails if no later repetition of it finishes. A command whose
+//! line ends with `expect error` must fail.
 //!
-//! An action during a command precedes it in the job. It starts its number of ticks after the command is sent,
-//! whichever step is then current. The job ends after all these actions. An operator can stop the job, command the
-//! robot meanwhile, and continue the job ([`operator`]).
+//! An action during a command precedes it in the job, and starts its number of ticks after the command is sent,
+//! whichever step is then current. The job ends after all these actions. An operator can interrupt it ([`operator`]).
 //!
-//! The emulator uses only Task's mailboxes: it reads a [`Status`] and writes a command ([`Hwsc::mailgram`]). It can
-//! run in another process, and a real workstation controller can replace it.
+//! The emulator uses only Task's mailboxes ([`Status`], [`Hwsc::mailgram`]), so it can run in another process, and a
+//! real workstation controller can replace it.
 
 mod operator;
 mod outcome;

@@ -5,10 +5,10 @@
 //!  tick ──newest entry──> slot in memory ──> writer thread ──> one of eight slots in the file, fdatasync
 //! ```
 //!
-//! The tick replaces the entry that the thread has not taken, so it never waits and nothing queues up. A new entry is
-//! due when the knowledge changes, and once per second. The file has its full length from the beginning: a full disk
-//! does not stop it. A failed write never stops a run; the next entry is tried again, and [`Journal::trouble`] reports
-//! the failure.
+//! The tick replaces the entry that the thread has not taken, so it never waits and nothing queues up. An entry is due
+//! when the knowledge changes, and once per second. The file has its full length from the beginning, so a full disk
+//! does not stop it. After a failed write the next entry is tried, and [`Journal::trouble`] reports it; the run
+//! continues.
 
 mod format;
 mod kept;

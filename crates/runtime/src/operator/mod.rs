@@ -1,19 +1,18 @@
 //! The operator of a run (IV): requests between two ticks, their permitted senders, and their execution.
 //!
-//! A request is a line of text ([`Request`]). Switches go to the joystick box, which the controller reads
-//! ([`Operator::at_the_box`]); entries at the terminals of the boards are a further input
-//! ([`Operator::at_the_terminals`]); requests to the cell are applied to the cell; a command goes through the
-//! mailbox of the job player and shares its command numbers. All of this happens in
-//! [`Run::operate`](crate::Run), after the motion of the cell and before the job player runs, so it takes
-//! effect in the next tick. The log contains every request with that tick, so that the inputs can be replayed.
+//! A request is a line of text ([`Request`]). Switches go to the joystick box ([`Operator::at_the_box`]), entries at
+//! terminals to a further input of the controller ([`Operator::at_the_terminals`]), commands through the mailbox and
+//! numbers of the job player. [`Run::operate`](crate::Run) does this after the motion of the cell and before the job
+//! player, so a request takes effect in the next tick. The log has it with that tick, so that the inputs can be
+//! replayed.
 //!
-//! One operator commands at a time: the first that sends a request for a motion, until it sends `leave` or
-//! disconnects. Every operator may send a stop.
+//! One operator commands: the first that sends a request for a motion, until it sends `leave` or disconnects. Every
+//! operator may send a stop.
 //!
-//! An operator's commands by hand (stick, buttons, frame, single steps, passes of a stopped process, keys of
-//! the rotary table's panel) end with `leave`, with the session, and with its silence ([`Operator::end_hold`]).
-//! Knob, stops and holding switches stay. A request whose sender no longer waits is discarded unless it is a
-//! stop ([`Event::Late`]). Both rules are here, for all kinds of connections.
+//! Commands by hand (stick, buttons, frame, single steps, passes of a stopped process, keys of the rotary table's
+//! panel) end with `leave`, with the session, and with its silence ([`Operator::end_hold`]); knob, stops and holding
+//! switches stay. A request whose sender no longer waits is discarded unless it is a stop ([`Event::Late`]). Both
+//! rules apply to all kinds of connections.
 
 mod by_hand;
 mod hold;
