@@ -186,7 +186,7 @@ impl Neighbourhood {
         Ok(Claim { clock, inbox, publisher, _token: token, _subscribers: [subscriber, watcher] })
     }
 
-    /// Tell a program why it is refused.
+    /// Sends a program the reason of its refusal.
     fn turn_away(&self, stream: UnixStream, reason: &str) {
         if let Ok((mut session, mut line)) = self.greet(stream, ClockKind::Real) {
             session.close(&reason);

@@ -13,7 +13,7 @@ pub enum End {
     Network(String), // the other end has ended it, with its reason; empty if it has none
     Violation(String), // the other end has broken the protocol
     Gone, // the other end has gone without a word
-    Silent, // nothing was received from the other end for too long
+    Silent, // the other end was silent for too long
     Stopped, // this process ends
 }
 

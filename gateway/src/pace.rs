@@ -13,7 +13,7 @@ use crate::address::Name;
 /// Pause after the first refusal; it doubles with each further one.
 const SHORTEST: Duration = Duration::from_millis(100);
 const LONGEST: Duration = Duration::from_secs(2);
-/// Refusals are forgotten after this time without a request.
+/// Refusals expire after this time without a request.
 const FORGOTTEN: Duration = Duration::from_secs(10);
 /// Greatest number of requests of one certificate that wait for the run. The last of them waits for four of the longest
 /// pauses, which is less than the 12 s for which a client waits.

@@ -86,7 +86,7 @@ impl<'a> Relay<'a> {
         }
     }
 
-    /// Run until the claim ends. The other end has been told, as far as possible.
+    /// Runs until the claim ends, and informs the other end if possible.
     pub fn run(mut self) -> End {
         let end = loop {
             if let Err(end) = self.turn() {

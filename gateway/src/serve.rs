@@ -1,4 +1,4 @@
-//! `rcs-gateway serve`: the gateway of a cell, beside its run.
+//! `rcs-gateway serve`: the gateway of a cell, on the machine of its run.
 
 use std::{
     io,
@@ -183,7 +183,7 @@ impl Gateway {
             if line.wait(None, session.deadline()).map_err(absent)? {
                 let now = Instant::now();
                 if !line.receive(|bytes| session.receive(bytes, now)).map_err(absent)? {
-                    // The reason may have come with the end.
+                    // The reason may be in the last bytes.
                     session.event(now).map_err(refused)?;
                     return Err(Refusal::Absent("the run has closed the connection".to_owned()));
                 }

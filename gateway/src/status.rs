@@ -53,7 +53,7 @@ impl Board {
             .wait()?;
         let (asked, path, key) = (Arc::clone(&known), run.clone(), cell.run());
         let answer = move |query: Query| {
-            // The key of the query may be that of all cells. Who gets no answer has gone.
+            // The key of the query may be that of all cells. A monitor without an answer has disconnected.
             let _ = query.reply(&key, lock(&asked).describe(is_socket(&path))).wait();
         };
         session.declare_queryable(cell.run()).callback(answer).background().wait()?;
@@ -80,7 +80,7 @@ impl Board {
         lock(&self.known).roles.insert(role.text(), name.to_owned());
     }
 
-    /// A role is no longer connected: nothing is known of its mailboxes.
+    /// A role is no longer connected: its mailboxes are unknown.
     pub fn disconnected(&self, role: Role) {
         let mut known = lock(&self.known);
         known.roles.remove(role.text());

@@ -127,7 +127,7 @@ impl Emulation {
         }
     }
 
-    /// Sends a datagram to the host. A host that is not running yet is no error.
+    /// Sends a datagram to the host. A host that is not running yet causes no error.
     fn send(&self, datagram: &[u8]) -> io::Result<()> {
         match self.socket.send_to(datagram, self.host) {
             Ok(_) => Ok(()),

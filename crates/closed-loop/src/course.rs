@@ -72,7 +72,7 @@ impl<L> Course<L> {
         }
     }
 
-    /// Continue after `tick` with these buffers, like a controller that starts with what it knew before.
+    /// Continue after `tick` with these buffers, like a controller that starts with earlier knowledge.
     pub fn start_after(&mut self, tick: Tick, memory: &CommonMemory) {
         self.tick = tick;
         let (before, _) = of_tick_mut(&mut self.halves, tick.next());

@@ -169,7 +169,7 @@ impl StationLines {
         self.lines.failure()
     }
 
-    /// What the operator is asked to do, once per line.
+    /// The request to the operator, once per line.
     pub fn news(&mut self) -> Option<String> {
         let asks = self.lines.asks(&self.mapping)?;
         (!std::mem::replace(&mut self.asked, true)).then(|| asks.to_owned())

@@ -107,7 +107,7 @@ impl<L, W: World> ClosedLoop<L, W> {
         Self { books: None, ..self }
     }
 
-    /// Continues like a controller that lost its power after `tick`, with what it knew. The world continues.
+    /// Continues like a controller that lost its power after `tick`, with its knowledge. The world continues.
     pub fn resume(&mut self, tick: Tick, memory: &CommonMemory, hws: &HwsCommand, generation: u32) {
         self.course.start_after(tick, memory);
         self.gate = Gate::resumed(hws);

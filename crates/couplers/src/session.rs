@@ -268,7 +268,7 @@ impl Session {
 
     fn finish(&mut self, link: &mut impl Link) -> Result<(), Fault> {
         let confirmed = if self.written_at.is_none() {
-            // Nothing was written.
+            // No output was written.
             true
         } else {
             let last =

@@ -25,7 +25,7 @@ fn milliseconds() -> u16 {
     u16::try_from(Monotonic.now().as_millis() % 0x1_0000).unwrap_or(0)
 }
 
-/// Requests priority, so that other programs do not delay what is measured.
+/// Requests priority, so that other programs do not affect the measurement.
 fn prepare() {
     if let Err(why) = realtime::raise_priority(realtime::FIELD_PRIORITY) {
         println!("without priority: {why}");

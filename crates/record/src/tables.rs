@@ -24,7 +24,7 @@ pub enum Origin {
 }
 
 impl Origin {
-    /// What a reader of the explanation must know; `None` if the tables are the same.
+    /// Remark for readers of the explanation; `None` if the tables are the same.
     #[must_use]
     pub const fn remark(self) -> Option<&'static str> {
         match self {

@@ -50,7 +50,7 @@ pub enum Event {
     HandedOver,        // the job has transferred the command to the workstation controller
     TakenBack,         // the workstation controller has disconnected, and the job continues
     Waits(WaitReason), // the job has begun to wait for an operator
-    Resumed(String),   // the controller has started with what it knew in an earlier run
+    Resumed(String),   // the controller has started with the knowledge of an earlier run
     /// The journal cannot be written, for this reason; `None` when it is written again.
     Journal(Option<String>),
     /// Task data have been loaded during the run.

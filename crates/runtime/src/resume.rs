@@ -159,7 +159,7 @@ fn differences(of_journal: &Identity, of_run: &Identity) -> Vec<String> {
     differ.map(|key| format!("{key} {} there, {} here", value(of_journal, key), value(of_run, key))).collect()
 }
 
-/// What the controller knows, in words.
+/// The knowledge of the controller, as text.
 impl fmt::Display for Resumed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let entry = self.entry();

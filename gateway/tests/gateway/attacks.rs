@@ -40,7 +40,7 @@ fn end() -> Vec<u8> {
 
 type Heard = Arc<Mutex<Vec<String>>>;
 
-/// Listens to the claim `id` of the victim, and answers in the place of the gateway. Returns what is heard, by key.
+/// Listens to the claim `id` of the victim, and answers in the place of the gateway. Returns the received samples, by key.
 fn listen(listener: &Session, id: &str) -> (Heard, u32) {
     let heard = Heard::default();
     let listen = |key: &str| {
@@ -84,7 +84,7 @@ fn listen(listener: &Session, id: &str) -> (Heard, u32) {
     (heard, attacks)
 }
 
-/// Sends commands and ends in the place of the victim, and asks for claims in its name. Returns what is answered.
+/// Sends commands and ends in the place of the victim, and asks for claims in its name. Returns the answers.
 fn speak(session: &Session, id: &str) -> (Vec<String>, u32) {
     let (mut heard, mut attacks) = (Vec::new(), 0);
     let front = format!("rcs/{CELL}/workstation/{VICTIM}/{id}");

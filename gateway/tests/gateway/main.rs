@@ -1,4 +1,4 @@
-//! The acceptance of the gateway, with processes: a run, its gateway, and neighbours behind it.
+//! The acceptance of the gateway, with processes: a run, its gateway, and neighbours connected through it.
 //!
 //! They need `rcs-run` and `rcs-neighbour`: `cargo build --release --workspace` in the repository.
 

@@ -74,7 +74,7 @@ impl Operator {
     }
 }
 
-/// What an operator holds by hand.
+/// Requests that an operator must hold.
 const HELD: [&str; 3] = ["joystick velocity 0", "joystick frame WORLD", "joystick stick 0 300 36000"];
 const RELEASED: &str = "stick and buttons are released"; // the answer to `leave` if something was held
 

@@ -21,7 +21,7 @@ use crate::{
 
 const OTHER: Ipv4Addr = Ipv4Addr::new(127, 0, 0, 2);
 const ATTACKER: Ipv4Addr = Ipv4Addr::new(127, 0, 0, 3);
-/// What an operator holds by hand, and the answer to `leave` if it was held.
+/// Requests that an operator must hold, and the answer to `leave` if it was held.
 const HELD: [&str; 3] = ["joystick velocity 0", "joystick frame WORLD", "joystick stick 0 300 36000"];
 const RELEASED: &str = "stick and buttons are released";
 

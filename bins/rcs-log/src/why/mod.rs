@@ -59,7 +59,7 @@ pub struct Arguments {
 pub struct Explanation {
     tick: u64,
     seconds: f64,
-    /// What a reader must know if the log does not have the decision tables of this program.
+    /// Remark for a log without the decision tables of this program.
     #[serde(skip_serializing_if = "Option::is_none")]
     tables: Option<&'static str>,
     world: Option<World>, // the first failure in the world; `None` if a tick was requested

@@ -1,6 +1,6 @@
 //! `rcs-run io-test`, `io-release` and `io-calibrate`: couplers over TCP without a run.
 //!
-//! Each command takes the devices of a mapping for itself, so it is refused while a run has them. A [`Probe`] is a
+//! Each command takes the devices of a mapping, and is refused while a run has them. A [`Probe`] is a
 //! session with a device in this thread. A question to the person lasts longer than the watchdog, so no session stays
 //! open during one.
 

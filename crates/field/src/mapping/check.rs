@@ -22,7 +22,7 @@ fn says(path: &str, message: impl std::fmt::Display) -> Problem {
     Problem::of_entry(KIND.value, path, format!("{path}: {message}"))
 }
 
-/// The mapping of a file, and what is wrong in it. Entries with stand-ins have their problem already.
+/// The mapping of a file, and its errors. Entries with stand-ins have their problem already.
 pub(super) fn build(sheet: &Sheet, stand_ins: &StandIns, problems: &mut Problems) -> Mapping {
     if sheet.form != FORM && stand_ins.trusts("form") {
         problems.add(unlike("form", format_args!("{FORM}, which this version reads"), sheet.form));

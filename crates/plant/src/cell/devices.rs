@@ -248,7 +248,7 @@ impl Devices {
         }
     }
 
-    /// What the sensors show, one value for each input; 0 for inputs of the controller's own records.
+    /// The sensor readings, one value for each input; 0 for inputs of the controller's own records.
     pub fn sense(&self, cell: &Cell, values: &mut Vec<i64>) {
         let parts = if self.sensors.iter().any(|sensor| matches!(sensor, Sensor::Tray(..))) {
             cell.parts()

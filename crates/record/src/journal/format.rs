@@ -57,7 +57,7 @@ pub struct Entry {
     pub memory: CommonMemory,
 }
 
-/// What a journal belongs to: task data, job, cell and program, by name.
+/// Task data, job, cell and program of a journal, by name.
 pub type Identity = BTreeMap<String, String>;
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -212,7 +212,7 @@ impl Journal {
         locked(&self.shared).is_over = true;
         self.shared.wake.notify_one();
         if let Some(thread) = self.thread.take() {
-            // A thread that has panicked has written what it could.
+            // A thread that has panicked has written all complete entries.
             let _ = thread.join();
         }
     }

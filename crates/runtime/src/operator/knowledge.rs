@@ -1,4 +1,4 @@
-//! `resume` (docs/resume.md): what the controller knows beside its sensors, and the name of what it holds.
+//! `resume` (docs/resume.md): knowledge of the controller that sensors do not give, and the name of the held object.
 
 use geometry::units::inches;
 use interfaces::{
