@@ -10,11 +10,11 @@ pub const GRACE: Duration = Duration::from_millis(100);
 pub enum End {
     /// The program at the socket has ended it, with its reason; empty if it has only closed the socket.
     Local(String),
-    Network(String), // the other end has ended it, with its reason; empty if it has none
+    Network(String),   // the other end has ended it, with its reason; empty if it has none
     Violation(String), // the other end has broken the protocol
-    Gone, // the other end has gone without a word
-    Silent, // the other end was silent for too long
-    Stopped, // this process ends
+    Gone,              // the other end has gone without a word
+    Silent,            // the other end was silent for too long
+    Stopped,           // this process ends
 }
 
 impl fmt::Display for End {

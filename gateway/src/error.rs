@@ -20,20 +20,11 @@ pub enum Error {
         "{}: the certificate cannot be used for TLS: {reason}; tools/keys.sh makes keys and certificates",
         .certificate.display()
     )]
-    Tls {
-        certificate: std::path::PathBuf,
-        reason: String,
-    },
+    Tls { certificate: std::path::PathBuf, reason: String },
     #[error("{endpoint}: {source}")]
-    Endpoint {
-        endpoint: Endpoint,
-        source: io::Error,
-    },
+    Endpoint { endpoint: Endpoint, source: io::Error },
     #[error("{address}: {source}")]
-    Socket {
-        address: Address,
-        source: io::Error,
-    },
+    Socket { address: Address, source: io::Error },
     #[error("{0}: another program listens there: choose another path")]
     InUse(Address),
     #[error("{0}: a monitor reads keys of Zenoh and has no mailboxes: see examples/fleet.py")]
@@ -42,11 +33,7 @@ pub enum Error {
         "{}: {reason} (is a router or gateway running there, and does it accept the certificate of {name}?)",
         list(.endpoints)
     )]
-    Unreachable {
-        endpoints: Vec<Endpoint>,
-        name: Name,
-        reason: String,
-    },
+    Unreachable { endpoints: Vec<Endpoint>, name: Name, reason: String },
     #[error("zenoh: {0}")]
     Zenoh(String),
     #[error(transparent)]

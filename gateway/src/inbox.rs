@@ -18,7 +18,7 @@ const LINES: usize = 16 * 1024; // greatest number of bytes of an operator's lin
 struct Contents {
     payloads: VecDeque<Vec<u8>>,
     bytes: usize,
-    is_gone: bool, // the other side has gone without an end
+    is_gone: bool,       // the other side has gone without an end
     has_overflown: bool, // lines were lost, because the claim's thread did not take them
 }
 

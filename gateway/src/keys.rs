@@ -22,43 +22,22 @@ const OTHERS: u32 = 0o077; // mode bits of access for others than the owner
 #[derive(Debug, thiserror::Error)]
 pub enum KeysError {
     #[error("{}: {source}; tools/keys.sh makes keys and certificates", .path.display())]
-    File {
-        path: PathBuf,
-        source: io::Error,
-    },
+    File { path: PathBuf, source: io::Error },
     #[error("{}: other users can read this private key (mode {mode:o}): use chmod 600", .path.display())]
-    Open {
-        path: PathBuf,
-        mode: u32,
-    },
+    Open { path: PathBuf, mode: u32 },
     #[error("{}: expected a private key of user {expected}, found one of user {found}", .path.display())]
-    Owner {
-        path: PathBuf,
-        expected: u32,
-        found: u32,
-    },
+    Owner { path: PathBuf, expected: u32, found: u32 },
     #[error("{}: expected a certificate in PEM, found something else", .0.display())]
     Certificate(PathBuf),
     #[error("{}: expected a certificate with the common name {expected}, found {found:?}", .path.display())]
-    CommonName {
-        path: PathBuf,
-        expected: Name,
-        found: String,
-    },
+    CommonName { path: PathBuf, expected: Name, found: String },
     #[error("{}: valid from {from} until {until}, and not now: make a new certificate", .path.display())]
-    Expired {
-        path: PathBuf,
-        from: String,
-        until: String,
-    },
+    Expired { path: PathBuf, from: String, until: String },
     #[error(
         "{}: expected one private key NAME.key, found {}; choose one with --name NAME",
         .directory.display(), list(.found)
     )]
-    Which {
-        directory: PathBuf,
-        found: Vec<String>,
-    },
+    Which { directory: PathBuf, found: Vec<String> },
 }
 
 fn list(names: &[String]) -> String {
@@ -138,9 +117,9 @@ impl Keys {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
-    Private, // this user only
+    Private,     // this user only
     OfUser(u32), // it belongs to another user
-    Open(u32), // other users can read it; its mode
+    Open(u32),   // other users can read it; its mode
 }
 
 #[must_use]

@@ -31,7 +31,7 @@ const REPEAT: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    Run, // the run: this process is the gateway
+    Run,       // the run: this process is the gateway
     Neighbour, // a neighbour: this process is at the other machine
 }
 
@@ -50,7 +50,7 @@ pub struct Relay<'a> {
     inbox: &'a Inbox,
     publish: &'a mut dyn FnMut(&State, Option<&str>),
     outgoing: State, // from the socket to the network
-    passed: State, // from the network to the socket, as far as written
+    passed: State,   // from the network to the socket, as far as written
     published: Instant,
     heard: Instant, // when the last sample was received, and when the other side has gone
     gone: Option<Instant>,

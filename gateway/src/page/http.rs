@@ -28,7 +28,7 @@ pub struct Request {
     pub cookie: Option<String>, // identifier of a login
     pub form: Vec<u8>,
     pub upgrade: Option<String>, // headers of a WebSocket, as the run gets them; `None` for a page
-    pub rest: Vec<u8>, // bytes after the request
+    pub rest: Vec<u8>,           // bytes after the request
 }
 
 /// Reads a request, at most until a time. Errors: a refusal; or the error of the connection.

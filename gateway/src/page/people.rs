@@ -30,32 +30,15 @@ const GROUP: usize = 4;
 #[derive(Debug, thiserror::Error)]
 pub enum PeopleError {
     #[error("{}: {source}; rcs-gateway person add NAME --role ROLE --people FILE makes the file", .path.display())]
-    File {
-        path: PathBuf,
-        source: io::Error,
-    },
+    File { path: PathBuf, source: io::Error },
     #[error("{}: expected a file that only user {user} can read, found {found}: use chmod 600", .path.display())]
-    Open {
-        path: PathBuf,
-        user: u32,
-        found: String,
-    },
+    Open { path: PathBuf, user: u32, found: String },
     #[error("{}:{line}: expected NAME ROLE HASH as rcs-gateway person writes them, found {found:?}", .path.display())]
-    Line {
-        path: PathBuf,
-        line: usize,
-        found: String,
-    },
+    Line { path: PathBuf, line: usize, found: String },
     #[error("{}: {name} is there already; for a new secret, remove the person first", .path.display())]
-    Known {
-        path: PathBuf,
-        name: PersonName,
-    },
+    Known { path: PathBuf, name: PersonName },
     #[error("{}: expected one of its persons, found {name}; rcs-gateway person list prints them", .path.display())]
-    Unknown {
-        path: PathBuf,
-        name: PersonName,
-    },
+    Unknown { path: PathBuf, name: PersonName },
     #[error("a secret cannot be made: {0}")]
     Secret(String),
 }

@@ -51,7 +51,7 @@ impl fmt::Display for Ended {
 }
 
 pub enum Upward {
-    Nothing, // nothing: a page follows
+    Nothing,      // nothing: a page follows
     All(Vec<u8>), // all bytes, and first those that are received already
 }
 

@@ -43,7 +43,7 @@ pub struct Tls {
     socket: TcpStream,
     session: ServerConnection,
     is_ended: bool, // the other side sends nothing more
-    sent: u64, // bytes that the system has accepted
+    sent: u64,      // bytes that the system has accepted
 }
 
 impl Tls {

@@ -40,7 +40,7 @@ fn end() -> Vec<u8> {
 
 type Heard = Arc<Mutex<Vec<String>>>;
 
-/// Listens to the claim `id` of the victim, and answers in the place of the gateway. Returns the received samples, by key.
+/// Listens to the claim `id` of the victim, and answers instead of the gateway. Returns the received samples, by key.
 fn listen(listener: &Session, id: &str) -> (Heard, u32) {
     let heard = Heard::default();
     let listen = |key: &str| {

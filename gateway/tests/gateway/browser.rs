@@ -26,7 +26,7 @@ pub type Stream = StreamOwned<ClientConnection, TcpStream>;
 
 pub struct Browser {
     config: Arc<ClientConfig>,
-    pub port: u16, // where it connects, which may be a line that can be cut
+    pub port: u16,    // where it connects, which may be a line that can be cut
     pub host: String, // host and port of the page
     from: Ipv4Addr,
     pub cookie: String,
