@@ -148,7 +148,8 @@ fn the_list_of_json_outputs_is_complete() {
     for line in page.lines() {
         if line.starts_with('#') {
             subcommand = line.trim_start_matches(['#', ' ']);
-        } else if line.starts_with("- `--json`") {
+        } else if line.starts_with("- `--json`") || line.starts_with("- As for") && line.contains("`--json`")
+        {
             with_json.insert(subcommand);
         }
     }

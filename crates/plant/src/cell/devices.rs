@@ -116,12 +116,14 @@ impl Devices {
 
     /// Follows the outputs of the controller, one value for each, for a tick. Call it before the cell is advanced.
     pub fn follow(&mut self, cell: &mut Cell, values: &[i64]) {
-        let outputs: Vec<(Output, i64)> = self
+        let mut outputs: Vec<(Output, i64)> = self
             .outputs
             .iter()
             .zip(values)
             .filter_map(|(output, value)| Some(((*output)?, *value)))
             .collect();
+        // A start in the same image as its program is of this program.
+        outputs.sort_by_key(|(output, _)| !matches!(output, Output::ViseProgram | Output::MachineProgram(_)));
         let mut openings = Vec::new();
         for (output, value) in outputs {
             match output {
