@@ -140,8 +140,7 @@ impl Arm {
     }
 
     /// Joint angles, radians, for a tool frame: arm in front, yaw within 90 degrees, elbow up, limits ignored. `near`
-    /// gives an undetermined base angle, and the turns of base and roll. Errors: [`ReachError`] if no joint angles
-    /// exist.
+    /// sets an arbitrary base angle, and the turns of base and roll. Errors: [`ReachError`] if no joint angles exist.
     #[inline]
     pub fn inverse(&self, tool: &Frame, near: &Joints) -> Result<Joints, ReachError> {
         if !tool.is_finite() {

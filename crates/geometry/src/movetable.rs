@@ -128,7 +128,7 @@ impl MovetableLine {
     }
 }
 
-/// A tool frame straight down, tool Y along world -Y: as over a tray at -X of the robot.
+/// A tool frame that points straight down, with tool Y along world -Y, as over a tray at -X of the robot.
 #[must_use]
 #[inline]
 pub fn straight_down(position: Vector) -> Frame {
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn rolled_trays_keep_their_order() {
-        // VIII.11: after a roll of -90 degrees, +Y leads along what was -Z.
+        // VIII.11: after a roll of -90 degrees, +Y points along the former -Z.
         let tray = Frame::identity();
         let rolled = line(System::Roll, [-9000, 0, 0]).apply(&tray);
         assert!((rolled.y() - Vector::new(0.0, 0.0, -1.0)).norm() < 1e-12);

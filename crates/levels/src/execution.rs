@@ -226,8 +226,8 @@ impl Execution {
 
     /// A restarted process reports executing until its previous orders are at rest.
     ///
-    /// `standing` is the reason from the process below during a PAUSE. A link failure during a PAUSE does not fail
-    /// it: the reason accompanies `done` (docs/design/link.md).
+    /// `standing` is the reason from the process below during a PAUSE. A link failure does not fail a PAUSE; its reason
+    /// accompanies `done` (docs/design/link.md).
     #[must_use]
     pub const fn report(&self, standing: Option<Reason>) -> Report {
         let Self { outcome, reason, .. } = *self;

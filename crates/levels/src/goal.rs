@@ -61,8 +61,8 @@ pub struct Goal {
     pub sensors: &'static [Sensor],
     /// The tolerance, with its unit; empty if the reading has two values.
     pub tolerance: &'static str,
-    /// Greatest age of a reading at the end of the command, ticks: the hops of the ladder from the sensor. The
-    /// process waits this long for a newer reading before the command fails.
+    /// Greatest age of a reading at the end of the command, in ticks: one for each hop from the sensor up the ladder.
+    /// The process waits this long for a newer reading before the command fails.
     pub age: u8,
     /// The part without a sensor, which the status names.
     pub unconfirmed: &'static [Unconfirmed],

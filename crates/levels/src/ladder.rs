@@ -81,7 +81,7 @@ macro_rules! ladder {
         #[derive(Clone, Debug, Default)]
         pub struct Ladder {
             $( $field: $id, )+
-            /// Single-step buttons of the previous tick: only pressing steps, not holding down.
+            /// Single-step buttons of the previous tick, because a button steps a process only when it is pressed.
             buttons: u8,
         }
 
@@ -200,8 +200,8 @@ impl Ladder {
         self.step_in_order(ProcessId::ALL, tick, before, external, data, after);
     }
 
-    /// One tick with the processes in another order, or of some of them: those of a board. The outputs of other
-    /// processes in `after` are those of `before`.
+    /// Steps the processes of one tick in another order, or only those of a board. The outputs of other processes in
+    /// `after` are those of `before`.
     pub fn step_in_order(
         &mut self,
         order: &[ProcessId],
@@ -214,8 +214,8 @@ impl Ladder {
         self.step_observed(order, tick, before, external, data, after, &mut |_| {});
     }
 
-    /// The same; `observe` is called with `None` once the buffers are copied from the previous tick, then with each
-    /// process. It can measure times, which the levels cannot.
+    /// Does the same and calls `observe`: with `None` once the buffers are copied from the previous tick, then with
+    /// each process. `observe` can measure times, which the levels cannot.
     #[expect(clippy::too_many_arguments, reason = "a tick's inputs and outputs, and the observer")]
     pub fn step_observed(
         &mut self,

@@ -67,7 +67,7 @@ impl Walk<'_> {
         Some(Datum { name, at: *at? })
     }
 
-    /// The movetable of the grip there, or else the pose of the location.
+    /// The datum of the end: the movetable of the grip there, or else the pose of the location.
     pub(crate) fn end_datum(&self, command: &EmoveCommand) -> Option<Datum> {
         let data = &self.data;
         let place = command.site.place();

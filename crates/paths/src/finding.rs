@@ -10,12 +10,12 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
     pub code: &'static str, // `path.joint`, `.contact`, `.link`, `.grip`, `.place`, `.gripper` or `.margin`
-    /// True: the motion fails or collides. False: it comes close to that.
+    /// True if the motion fails or collides; false if it only comes close to that.
     pub error: bool,
     pub line: u32, // from 1
     pub message: String,
     pub help: Option<String>,
-    /// The records of the two ends: one is probably wrong. Empty if the order of the lines is wrong.
+    /// The records of the two ends, of which one is probably wrong. Empty if the order of the lines is wrong.
     pub data: Vec<Datum>,
     #[serde(skip)]
     pub key: String, // identifies the same finding in other walks

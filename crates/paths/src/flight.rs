@@ -25,12 +25,12 @@ const LAG: u32 = 100; // ticks until the servos come to rest
 pub enum Trouble {
     Joints {
         problem: JointProblem,
-        /// Joint from 0, and degrees beyond its limit; `None`: out of reach.
+        /// Index of the joint and degrees beyond its limit; `None` if the point is out of reach.
         joint: Option<(usize, f64)>,
         at: [f64; 3], // tool point, inches, world
     },
     Words, // no DEPC words for the position
-    /// A parameter is not positive: the motion would never end.
+    /// A parameter is not positive, so the motion would never end.
     Parameters,
     Endless,
 }
@@ -51,7 +51,7 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// A robot at rest, joint angles in radians; `None` if DEPC words cannot encode the position.
+    /// A robot at rest at these joint angles (radians); `None` if DEPC words cannot encode the position.
     #[must_use]
     pub fn standing(actuators: &Actuators, joints: &Joints) -> Option<Self> {
         let plate = Plate::from_frame(&T3.forward_plate(joints), &Plate::default()).ok()?;

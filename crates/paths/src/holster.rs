@@ -95,7 +95,7 @@ pub fn finding(message: &str, help: Option<String>, datum: Option<Datum>) -> Fin
     }
 }
 
-/// End effector id to fetch; `None` if the attached gripper is right, or any is.
+/// End effector id to fetch; `None` if the attached gripper is right, or if the command needs none.
 #[must_use]
 pub fn wanted(command: &HwsCommand, attached: Option<u8>, data: &TaskData<'_>) -> Option<u8> {
     let grips = data.obj_grips(&command.object?)?;

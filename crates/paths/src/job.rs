@@ -37,7 +37,7 @@ pub const NOT_CHECKED: [&str; 6] = [
     "the lag of the resolvers; the lag of the servos is included",
 ];
 const STANDS: f64 = 0.5; // in: the robot is at the location point
-/// Tried places of a part: x, y as shares of the greatest offset; degrees. Half a turn makes no difference.
+/// Places of a part to try: x and y as shares of the greatest offset, and degrees. Half a turn changes nothing.
 const TRIED: [[f64; 3]; 12] = [
     [0.0, 0.0, 22.5],
     [0.0, 0.0, 45.0],
@@ -269,7 +269,7 @@ fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding
     let mut findings = Vec::new();
     for (number, step) in change.iter().chain(&own).enumerate() {
         let (walked, more) = state.step(step, task);
-        // The verdict on the command covers its own steps.
+        // The verdict reports missing data of the command's own steps.
         let missing = walked.plan.missing.as_ref().filter(|_| number < change.len());
         findings.extend(missing.map(|missing| no_way(missing, step, &walked.plan)));
         findings.extend(more);

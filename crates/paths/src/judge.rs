@@ -22,11 +22,11 @@ use crate::{
 
 pub const LEAST_MARGIN: f64 = 0.5; // degrees; below it, a warning
 
-/// Greatest offset of fingers from a part in the closed vise, in (ASSUMED): beyond it the part slips.
+/// A part in the closed vise slips if the fingers are farther than this from it, in (ASSUMED).
 const BESIDE: f64 = 0.015;
 
 impl State<'_> {
-    /// `commands` are those of E-move and Subtask. Contacts are checked only if `clear`: all positions are known.
+    /// `commands` are those of E-move and Subtask. Contacts are checked only if `clear`, when all positions are known.
     pub fn fly(&mut self, phase: Phase, commands: [&'static str; 2], clear: bool) -> (Walked, Vec<Finding>) {
         if phase.legs.is_empty() || phase.missing.is_some() {
             return (Walked::of(phase), Vec::new());

@@ -1,4 +1,4 @@
-//! Caches flights: one is simulated again only if the bodies near it have changed.
+//! Caches flights. A flight is simulated again only if the bodies near it have changed.
 
 use std::{
     collections::HashMap,
@@ -19,7 +19,7 @@ use crate::{
     survey::{SIGHT, Seen, Survey},
 };
 
-/// `opens`: index from which the fingers have the opening of the goal.
+/// From the index `opens` on, the fingers have the opening of the goal.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Points {
     pub list: Vec<(Frame, TrajPara)>,

@@ -1,5 +1,5 @@
-//! Conditions in the cell before a step: a part to grasp, open jaws and drum for a carried part, support for a
-//! released one.
+//! Checks the cell before a step: the part to grasp is there, jaws and drum are open for a carried part, and a released
+//! part has support.
 
 use geometry::units::Length;
 use interfaces::emove::EmoveVerb;

@@ -130,7 +130,7 @@ impl<'a> State<'a> {
     pub fn step(&mut self, step: &Step, task: &str) -> (Walked, Vec<Finding>) {
         let hindrance = self.hindrance(step);
         let (walked, mut findings) = self.make(step, task);
-        // A missing or clamped part also causes contacts: only the cause is reported.
+        // A missing or clamped part also causes contacts, so only the cause is reported.
         if let Some(hindrance) = hindrance {
             findings = vec![hindrance];
         }
@@ -162,7 +162,7 @@ impl<'a> State<'a> {
                         _ => "INSERT-TOOL",
                     },
                 };
-                // After a guarded move the position is unknown. INS-NEAR ends at its goal, or has failed.
+                // After a guarded move the position is unknown. INS-NEAR, if it does not fail, ends at its goal.
                 let known = match name {
                     "QCD-UP" | "REL-BACK" => false,
                     "INS-NEAR" => true,
@@ -197,7 +197,7 @@ impl<'a> State<'a> {
                 self.before = vec![["RELEASE", ""]];
             }
             Step::GraspTool => {
-                // The end of a guarded move is unknown: the fingers are taken to be at the drum's tool position.
+                // The end of a guarded move is unknown, so the fingers are assumed at the drum's tool position.
                 let drum = self.room.cell().drum.pose.frame();
                 if let Some((object, drum)) = self.tool_in_drum().zip(drum) {
                     self.grasp(&object, 1, &drum);
@@ -315,8 +315,8 @@ impl<'a> State<'a> {
     }
 }
 
-/// The part frame from vision (V.2.1 LOCATE-OBJ): in the plane of the location, turned by at most 90 degrees until
-/// tool Y lies across the wider side for grip 1, the narrower for others (VII.7.6).
+/// The part frame from vision (V.2.1 LOCATE-OBJ) is in the plane of the location. It is turned by at most 90 degrees
+/// until tool Y crosses the wider side for grip 1, the narrower for others (VII.7.6).
 fn found(place: &Frame, part: &Placed, grip: i32) -> Frame {
     let aside = part.frame.position - place.position;
     let at = Vector::new(0.0, aside.dot(&place.y()), aside.dot(&place.z()));

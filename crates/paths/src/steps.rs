@@ -18,7 +18,7 @@ const TOOL_TRANSFER: &str = "TOOL-TRNS"; // tool transfer to the drum
 pub enum Step {
     Go {
         verb: EmoveVerb,
-        /// Gives grip, approach and depart.
+        /// The object determines grip, approach and depart.
         object: Option<Name16>,
         grip: i32,
         location: Location,
@@ -151,7 +151,7 @@ impl Maker<'_> {
         Ok(Step::Go { verb: EmoveVerb::MovToLoc, object: None, grip: 0, location })
     }
 
-    /// Adds GET-OBJECT: looks first if vision is used there.
+    /// Adds GET-OBJECT, after a look at the object if vision is used there.
     fn get(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
         let (command, grip) = (self.command, self.command.source_grip);
         if self.held_object().is_some() {

@@ -88,7 +88,7 @@ pub fn walk_stored(store: &Store, room: &Room, known: &Known) -> Stored {
 /// Parameters where a point has none of its own.
 const FREE: TrajPara = TrajPara { acc_fac: 4, vel_max: 100, smooth: 8, brk_dst: 0 };
 
-/// An end that is a location point: its last depart point or first approach point.
+/// If the end is a location point, returns its last depart point or first approach point.
 fn end_of(data: &TaskData<'_>, end: Reference, direction: Direction, at: At) -> Option<Fixed> {
     let id = (end.kind == RefType::LocationPoint).then(|| LocptId::new(end.number))?;
     let (point, place) = (data.locpt(id)?, Place::point(id));

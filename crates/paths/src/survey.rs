@@ -15,7 +15,7 @@ pub const MARGIN: f64 = 2.0;
 /// Inches. A greater distance skips more ticks, but makes each check slower.
 pub(crate) const SIGHT: f64 = 4.0;
 const FREE: f64 = 0.05; // in: ends a permitted contact
-/// More depth for a part in nest or vise, in (ASSUMED): its place in the fingers depends on vision.
+/// Additional depth (in, ASSUMED) for a part in nest or vise, because vision determines its place in the fingers.
 pub const FIT: f64 = 0.02;
 const PUSH_FIT: f64 = 0.05; // more depth for a pushed part, in (ASSUMED): it lies as it fell
 /// Greatest displacement of any point of the robot, in per radian of each joint, base to roll.
@@ -184,7 +184,7 @@ impl<'a> Survey<'a> {
         if -contact.depth < MARGIN && nearer(&self.seen.nearest) {
             self.seen.nearest = Some(Passing::from(contact));
         }
-        // The position of a part in the fingers is known only to `FIT`.
+        // The position of a part in the fingers is known only within `FIT`.
         let sure = contact.mover_kind != Kind::HeldPart || contact.depth > FIT;
         if contact.touches() && sure && nearer(&self.seen.touched) {
             self.seen.touched = Some(Passing::from(contact));

@@ -161,7 +161,7 @@ impl<'a> Walk<'a> {
                 (gone_to, grips.map_or(location.frame, |by| self.data.moved(&location.frame, by)))
             }
         };
-        // With the object E-move departs as it came, until the fingers release it.
+        // E-move departs along its approach with the object, until the fingers release it.
         let gone_to = match gone_to {
             GoneTo::Object(brought) if verb == EmoveVerb::MovObjTo => GoneTo::Brought(brought),
             gone_to => gone_to,

@@ -77,7 +77,7 @@ fn a_held_part_moves_with_the_hand() {
     let [blank, bar] = ["LINKBAR1_BH with grip +2", "LINKBAR1 with grip +2"].map(Some);
     assert_eq!(held, [blank, None, None, None, bar, None]);
     assert_eq!(walked.lines[0].tried, 13, "the part lies anywhere in its sector");
-    // 0.04 in on each side of the bar: the least clearance.
+    // The least clearance is 0.04 in, on each side of the bar.
     let into = walked.lines[0].phases.last().and_then(|phase| phase.segments.last()).unwrap();
     let near = into.nearest.as_ref().unwrap();
     assert_eq!((near.mover.as_str(), near.obstacle.as_str()), ("LINKBAR1_BH", "fixed_jaw"));
@@ -85,7 +85,7 @@ fn a_held_part_moves_with_the_hand() {
     assert!(walked.nearest().is_some_and(|near| near.clearance_in > -0.01));
 }
 
-/// As `data/README.md` states for the linkbar job.
+/// The sectors that fit are those that `data/README.md` states for the linkbar job.
 #[test]
 fn each_sector_is_fit_or_not() {
     let (store, _) = Store::load(data()).unwrap_or_else(|report| panic!("{report}"));

@@ -15,7 +15,7 @@ use crate::{Plain, header::Header, tick::Tick};
 /// Ticks after which a command without an echo is treated as lost.
 pub const ECHO_LIMIT: u64 = 3;
 
-/// First number of a starting commander minus the last one that it finds: more than the commands in transit.
+/// A starting commander begins this far after the last number that it finds, beyond those of commands in transit.
 pub const FIRST_STEP: u32 = 4;
 
 /// The command number after `number`. Numbers wrap around and skip 0, which means none.
@@ -86,7 +86,7 @@ impl Commander {
         }
     }
 
-    /// Number of a new command. The first keeps a distance from the echo, as earlier commands may be in transit.
+    /// Returns the number of a new command. The first skips numbers, because earlier commands may be in transit.
     pub fn send(&mut self, tick: Tick) -> u32 {
         let steps = if self.started { 1 } else { FIRST_STEP };
         for _ in 0..steps {
@@ -220,7 +220,7 @@ mod tests {
         let mut commander = Commander::default();
         commander.start_from(Tick(10), 0, 41);
         let under_way = commander.send(Tick(10));
-        // Its state is lost, its output buffer remains, and the echo is still the old one.
+        // The restarted commander has lost its state but not its output buffer, and reads the old echo.
         let mut restarted = Commander::default();
         restarted.start_from(Tick(11), under_way, 41);
         assert_eq!(restarted.read(Tick(11), &header(10), 41, Lower::Done), Lower::Pending, "that is another");
@@ -247,8 +247,7 @@ mod tests {
     }
 
     proptest! {
-        /// With any restarts, no command (identified by content, not number) is executed twice, and each status is its
-        /// own.
+        /// Despite any restarts, no command (by content, not number) is executed twice or gets the status of another.
         #[test]
         fn each_command_is_executed_at_most_once(events in prop::collection::vec(0_u8..12, 1..300)) {
             let mut commander = Commander::default();

@@ -16,8 +16,8 @@ pub struct Header {
     pub decided: Option<Decided>,
     /// Tick of that decision and the values of its table. None for a row of another system, whose mailbox omits them.
     pub basis: Option<Basis>,
-    /// Rows of other tables that fired at the last step of the process: in the tick of the stamp, unless the outputs
-    /// are republished.
+    /// Rows of other tables that fired at the last step of the process. It was in the tick of the stamp, unless the
+    /// outputs are republished.
     pub beside: [Option<Consulted>; BESIDE],
     /// Step of the current command after the decision: its reference action (V.1.1).
     pub step: Option<Name16>,

@@ -58,7 +58,7 @@ impl<const N: usize> Name<N> {
     /// The empty name, a null field.
     pub const EMPTY: Self = Self([0; N]);
 
-    /// A name from text. Errors: longer than `N`, or not printable ASCII without blanks.
+    /// Makes a name from text. Errors: the text is longer than `N`, has blanks, or is not printable ASCII.
     #[inline]
     pub const fn new(text: &str) -> Result<Self, NameError> {
         let from = text.as_bytes();
@@ -79,7 +79,7 @@ impl<const N: usize> Name<N> {
         Ok(Self(bytes))
     }
 
-    /// The first `N` characters (SPECNOTES.md, contradiction 22), `?` in place of characters that no name has.
+    /// Keeps the first `N` characters (SPECNOTES.md, contradiction 22) and replaces those that no name can have by `?`.
     #[must_use]
     #[inline]
     pub fn clipped(text: &str) -> Self {

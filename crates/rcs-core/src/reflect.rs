@@ -65,7 +65,7 @@ pub struct Within<'a> {
 }
 
 impl Leaf<'_> {
-    /// Bytes and their values in images that contain the field: flags of options, codes of variants.
+    /// Positions and values of the bytes that an image with this field has: option flags and variant codes.
     pub fn given(&self) -> impl Iterator<Item = (usize, u8)> {
         core::iter::successors(self.within, |within| within.outer).map(|within| (within.at, within.code))
     }

@@ -56,7 +56,7 @@ fn of_struct(name: &Ident, data: &DataStruct) -> Result<TokenStream> {
             const SCHEMA: ::rcs_core::plain::Schema = ::rcs_core::plain::Schema::Struct(Self::STRUCT);
             const ZERO: Self = Self { #( #names: <#types as ::rcs_core::Plain>::ZERO, )* };
 
-            // One check of the length for all fields: the compiler knows the place of each.
+            // One check of the length covers all fields, because the compiler knows the place of each.
             fn encode(&self, w: &mut ::rcs_core::plain::Writer<'_>) {
                 let Some(chunk) = w.chunk::<{ <#name as ::rcs_core::Plain>::SIZE }>() else { return };
                 let w = &mut ::rcs_core::plain::Writer::new(chunk);

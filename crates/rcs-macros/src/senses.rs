@@ -55,7 +55,7 @@ pub fn expand(mut block: ItemImpl) -> Result<TokenStream> {
             #( #variables )*
             /// The type of the variable that a table above passes on.
             pub type Passed = #passed;
-            /// Sets a variable to what was passed on, if it is the one that is passed on.
+            /// Setters, one per variable. Only that of the passed variable changes it.
             pub mod pass { #( #setters )* }
         }
     })

@@ -217,13 +217,13 @@ fn forces_of_guarded_moves_have_the_sign_of_the_reaction() {
     let store = load();
     let data = store.view();
     for (sensor, source, threshold) in [
-        // Into the drum: the force on the tool is along -X.
+        // The drum pushes along -X on a tool that is inserted.
         ("INS-FX", SensorSource::Fx, -60),
-        // Against the strike plate.
+        // The strike plate pushes the tool along -X.
         ("ACQ-FX", SensorSource::Fx, -25),
-        // Out of the drum: the force on the tool is along +X.
+        // The drum pulls along +X on a tool that is removed.
         ("REM-FX", SensorSource::Fx, 60),
-        // To the right, along -Z: the shoulder pushes along +Z in front of the sensor, a moment about -Y.
+        // The tool moves right, along -Z. The shoulder pushes it along +Z in front of the sensor, a moment about -Y.
         ("REL-MY", SensorSource::My, -150),
         ("ACQ-MY", SensorSource::My, 150),
     ] {

@@ -142,7 +142,7 @@ fn camera_is_directly_above_the_sector() {
     let (_, vision) = data.view(&name("LINKBAR1_BH"), &sector.place).unwrap();
     assert_eq!((vision.id, vision.range, vision.enabled), (17, 590, true));
     let view = data.moved(&sector.frame, vision.movetable);
-    // Image plane at tool (-9, 0, 3), looking along (cos 3, 0, -sin 3).
+    // The camera looks from the image plane at tool (-9, 0, 3) along (cos 3, 0, -sin 3).
     let image = view.shifted(geometry::frame::Vector::new(-9.0, 0.0, 3.0));
     assert!((image.position.x - sector.frame.position.x).abs() < 0.01);
     assert!((image.position.y - sector.frame.position.y).abs() < 1e-9);

@@ -145,7 +145,7 @@ fn origins(source: &Source) -> Vec<(BlockNumber, String)> {
 
 #[test]
 fn every_block_of_the_data_names_its_source() {
-    // According to the remark above the block.
+    // The figures of each block, according to the remark above it.
     let mut figure_of: BTreeMap<BlockNumber, Vec<&str>> = BTreeMap::new();
     let printed = figures();
     for block in blocks(0, &printed).0 {

@@ -89,7 +89,7 @@ fn printed_arrays_fit_the_tray_and_count_by_rows() {
         let mut before: Option<(i32, f64, f64)> = None;
         for sector in 1..=columns * rows {
             let frame = data.resolve_location(&name("A"), Some(sector), Some(&name(object))).unwrap().frame;
-            // From the robot: right is world +Y, top is world -X, from the upper left corner of the tray.
+            // Seen from the robot, from the upper left corner of the tray, right is world +Y and top is world -X.
             let (right, down) = (frame.position.y - corner.position.y, frame.position.x - corner.position.x);
             assert!(
                 (0.0..21.0).contains(&right) && (0.0..21.0).contains(&down),

@@ -157,7 +157,7 @@ impl State {
         self.execution.fail(reason);
     }
 
-    /// The ring keeps its state.
+    /// Stops the robot; the ring keeps its state.
     fn stop_robot(&mut self, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
         self.localization.search_again();
         self.motion.send(PrimVerb::Pause, inputs, outputs);
@@ -183,7 +183,7 @@ impl State {
         self.localization.arrive(robot_at(command, gone_to, goal.pose));
     }
 
-    /// Relative moves have ended at the location of the command.
+    /// Records that relative moves have ended at the location of the command.
     fn stand(&mut self, gone_to: GoneTo, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
         self.localization.stand(gone_to, command, inputs.memory);
         self.exchange.end();

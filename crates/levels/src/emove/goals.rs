@@ -27,7 +27,7 @@ pub static REST: Goal = Goal {
     age: 1,
     unconfirmed: &[],
 };
-/// MOV-TO-LOC, MOV-TO-OBJ, MOV-TO-HOL, MOV-TO-VU, LOCATE-OBJ.
+/// Goal of MOV-TO-LOC, MOV-TO-OBJ, MOV-TO-HOL, MOV-TO-VU and LOCATE-OBJ.
 pub static PLACE: Goal = Goal {
     holds: "the robot is at the goal pose",
     sensors: &[Sensor::Resolvers],

@@ -41,8 +41,8 @@ use super::{
 const AT_POINT: f64 = 0.12; // in: much shorter than any relative move
 const AT_LOW: f64 = 0.3; // in: QCD-DOWN may end a little above or below the low point
 const CLEAR: f64 = 0.3; // in: clear of the holster near the upper points, or beyond them
-/// Height above a segment on the way to the seat, in: QCD-SEAT begins where the large sensors see the ears, up to
-/// 0.5 in above the low point (V.2.1). QCD-UP ends as much above its point.
+/// Height above a segment on the way to the seat, in: QCD-SEAT begins where the large sensors see the ears, up to 0.5
+/// in above the low point (V.2.1). QCD-UP ends as far above its point.
 const ABOVE: f64 = 0.6;
 
 struct HolsterPoints {
@@ -207,9 +207,9 @@ impl GripperExchange {
         }
     }
 
-    /// True if the id pins read no gripper although the ring stayed locked since one was attached: bad contact, and the
-    /// held object is unknown until they read again. A gripper that its own holster detects, while the robot is in no
-    /// holster, has been torn off the ring.
+    /// True if the id pins read no gripper although the ring stayed locked since one was attached. Their contact is
+    /// bad, and the held object is unknown until they read again. A gripper that its own holster detects, while the
+    /// robot is in no holster, has been torn off the ring.
     pub(super) fn is_misread(&self, memory: &CommonMemory) -> bool {
         let read = EmoveGripper::attached(memory);
         let locked = memory.quick_change.status.ring == RingPosition::Locked;
@@ -227,7 +227,7 @@ impl GripperExchange {
         attached != mem::replace(&mut self.attached, attached)
     }
 
-    /// A relative move begins: the robot is in the holster.
+    /// Notes that a relative move begins, so the robot is in the holster.
     pub(super) fn note_move(&mut self, command: &EmoveCommand, inputs: &EmoveInputs<'_>) {
         let gripper = command.end_effector_id.filter(|_| is_exchange(command.command));
         if let (Some(gripper), Some(base)) = (gripper, base(command, inputs.memory, inputs.data)) {

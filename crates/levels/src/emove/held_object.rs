@@ -21,7 +21,7 @@ use super::{
 };
 use crate::execution::{Execution, Outcome};
 
-/// Ticks without contact of a held object (0.2 s): longer than a part takes from one finger to the other.
+/// Ticks without contact of a held object (0.2 s). A part needs less time from one finger to the other.
 const UNFELT_TICKS: u8 = 5;
 /// Least opening that releases an unknown object, 0.01 in (ASSUMED).
 const LEAST_RELEASE: i32 = 50;
@@ -110,7 +110,7 @@ impl HeldObject {
         self.releasing = order == FingerVerb::Release;
     }
 
-    /// The order no longer shows a paused release; a restarted E-move reads it here.
+    /// Records a paused release, which the order no longer shows, for a restarted E-move.
     pub(super) const fn pause_release(&mut self) {
         self.grasping = None;
     }
@@ -168,8 +168,8 @@ impl HeldObject {
         None
     }
 
-    /// False while the fingers move or do not press the object, before the closing command has checked, and if
-    /// the fingers only opened since they were empty.
+    /// False while the fingers move or do not press the object, before the closing command has checked the grasp, and
+    /// if the fingers only opened since they were empty.
     fn may_adopt(
         &self,
         command: &EmoveCommand,
@@ -189,8 +189,8 @@ impl HeldObject {
     /// operator moves it, or while the arm has no pressure: the robot controller is off, or the resolvers give no
     /// position. Such an arm also pushes an object that it has just released, or is about to grasp.
     ///
-    /// `origin` is the last place of the robot; `ends` are those of its path; `drum` is that of an unfinished tool
-    /// command; `is_sensed` is false if the resolvers give no position.
+    /// `origin` is the last place of the robot; `ends` are the ends of its path; `drum` is the place of an unfinished
+    /// tool command; `is_sensed` is false if the resolvers give no position.
     pub(super) fn sense_seat(
         &mut self,
         (origin, ends): (Option<&RobotPlace>, [Option<&RobotPlace>; 3]),
@@ -226,7 +226,7 @@ impl HeldObject {
         }
     }
 
-    /// The robot has grasped an object here, or released one that did not slide.
+    /// Clears the disturbance after a grasp here, or after the release of an object that did not slide.
     fn forget_disturbance(&mut self, here: Option<&RobotPlace>) {
         let is_here = |at: &RobotPlace| here.is_some_and(|here| at.site.has_location_of(&here.site));
         self.disturbed = self.disturbed.filter(|at| !is_here(at));
@@ -318,7 +318,7 @@ impl HeldObject {
         self.is_releasing(at_place) || (!around && !grippers.are_moving(inputs.tick, memory))
     }
 
-    /// In 0.01 in. An unknown object may be wider than the command's: the fingers open from their present opening.
+    /// In 0.01 in. An unknown object may be wider than that of the command, so the fingers open from where they are.
     pub(super) fn depart_opening(
         &self,
         holding: Holding,

@@ -96,7 +96,7 @@ impl State {
         };
     }
 
-    /// E-move was not stepped in the tick before: its state and its outputs contain the same estimates, or it has been
+    /// E-move was not stepped in the previous tick. Its state and its outputs contain the same estimates, unless it was
     /// restarted and adopts those of the outputs.
     pub(super) fn write(&mut self, write: &Write, inputs: &EmoveInputs<'_>, outputs: &mut EmoveOutputs) {
         self.adopt(&outputs.estimates);

@@ -43,13 +43,13 @@ pub const fn robot_at(command: &EmoveCommand, gone_to: GoneTo, pose: Pose) -> Ro
     RobotPlace { gone_to, site: command.site, pose }
 }
 
-/// The operator has the robot. Its place matters again when the operator gives it back.
+/// True if the operator has the robot. Its place matters again when the operator gives it back.
 #[must_use]
 pub fn is_moved_by_hand(memory: &CommonMemory) -> bool {
     memory.prim.status.report == PrimReport::JoystickOn
 }
 
-/// The link to the robot controller has failed, or Prim restarts it. The arm may have moved since.
+/// True if the link to the robot controller has failed, or Prim restarts it. The arm may have moved since.
 #[must_use]
 pub const fn is_cut_off(memory: &CommonMemory) -> bool {
     let status = &memory.prim.status;
@@ -96,10 +96,10 @@ pub fn commanded_pose(memory: &CommonMemory) -> Option<Pose> {
     commanded.or_else(|| present_frame(memory).map(|frame| Pose::from_frame(&frame)))
 }
 
-/// Within these a robot is at a place: the tolerance that Prim confirms after a motion.
+/// A robot within these is at a place. Prim confirms this tolerance after a motion.
 pub const THERE_INCHES: f64 = 0.02;
 pub const THERE_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0; // 0.1 degree
-/// Within these a place is confirmed: the arm settles while the status is passed up.
+/// A place within these is confirmed, because the arm settles while the status is passed up.
 pub const CONFIRMED_INCHES: f64 = 0.05;
 pub const CONFIRMED_RADIANS: f64 = 0.25 * core::f64::consts::PI / 180.0; // 0.25 degree
 

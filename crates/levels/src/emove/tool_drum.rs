@@ -36,8 +36,8 @@ use super::{
 use crate::execution::Execution;
 
 const SEATED: f64 = 0.15; // in, of depth: the fingers of the drum close on the tool
-/// The fingers are around the tool within this distance to the right of the way in, in. To the left they are so up to
-/// the end of ACQ-SLIDE, which a sensor determines, plus this distance.
+/// To the right of the way in, the fingers are around the tool within this distance, in. To the left, they are around
+/// it up to this distance beyond the end of ACQ-SLIDE, which a sensor determines.
 const AROUND: f64 = 0.25;
 const WIDE_IN: f64 = 0.75; // in, sideways, for a tool that is not in its place
 const FREE: f64 = 0.15; // in beyond INS-NEAR, without contact
@@ -208,7 +208,7 @@ impl ToolDrum {
         self.half_way = None;
     }
 
-    /// After motion of a robot with the fingers around a tool in the drum, the tool command is unfinished again: the
+    /// If the robot moves with the fingers around a tool in the drum, its tool command is unfinished again, because the
     /// tool or the fingers have moved. `at` is the place where the last motion ended. True if the robot was moved.
     pub(super) fn sense_moved_tool(&mut self, at: Option<&RobotPlace>, inputs: &EmoveInputs<'_>) -> bool {
         let Some(at) = at.filter(|at| at.gone_to == GoneTo::Drum) else { return false };

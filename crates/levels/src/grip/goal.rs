@@ -10,10 +10,10 @@ use crate::execution::Course;
 
 pub(super) const CLOSED_END: f64 = 0.10; // in (VIII.9.1: a closed gripper has 0.10 in)
 pub(super) const OPEN_END: f64 = 5.00; // in
-/// Force on each finger, lb, read on fingers shut on each other. ASSUMED: the pads meet at the closed end.
+/// Force that each finger reads when the fingers are shut on each other, lb. ASSUMED: the pads meet at the closed end.
 pub(super) const SUPPLY_FORCE: f64 = 80.0;
 
-/// Goal of the current command: a copy, because the buffer of a commander that restarts is empty.
+/// A copy of the goal of the current command, since the buffer of a commander that restarts is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripGoal {
     pub verb: GripVerb,

@@ -4,9 +4,9 @@
 //! the opening. The servo chooses a flow by the remaining distance, stops in a dead band, lets the readings settle,
 //! and then decides. To prevent oscillation, a stopped flow starts again only outside a wider band.
 //!
-//! UP-INIT starts by itself when the system starts, later only by command: it closes with the whole supply
-//! pressure, and a part may be held. Commands wait for it. Without a calibration only OPEN-GRIP to the open end
-//! works: all open flows until the readings are steady.
+//! UP-INIT starts by itself when the system starts, later only by command, because it closes with the whole supply
+//! pressure and a part may be held. Commands wait for it. Without a calibration only OPEN-GRIP to the open end works,
+//! with all open flows until the readings are steady.
 //!
 //! ```text
 //!   a command                               the calibration (UP-INIT)

@@ -23,7 +23,7 @@ use super::{
 
 pub(super) const CONTACT: f64 = 1.0; // lb
 pub(super) const MISSED_AT_END: f64 = 0.02; // in above the closed opening: no smaller opening exists
-/// 0.2 s: longer than it takes to push a part from one finger to the other.
+/// 0.2 s, longer than it takes to push a part from one finger to the other.
 pub(super) const FELT_TICKS: u8 = 5;
 const STILL_COUNTS: u16 = 6; // above the noise, below a fine flow
 const BEYOND: f64 = 0.15; // in; an opening farther beyond an end of travel is a sensor failure
@@ -57,7 +57,7 @@ impl State {
         }
     }
 
-    /// The calibration has opened the fingers and read no force: they are empty.
+    /// Notes that the fingers are empty: the calibration has opened them and read no force.
     pub(super) fn set_empty(&mut self) {
         (self.felt, self.touch, self.touch_ticks) = (Felt::Nothing, Touch::Free, FELT_TICKS);
     }

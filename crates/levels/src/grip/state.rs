@@ -34,7 +34,7 @@ pub struct State {
     pub execution: Execution,
     pub step: Step,
     pub goal: GripGoal,
-    /// Start of its execution after a wait, or of the calibration.
+    /// Start of the command's execution after a wait, or start of the calibration.
     pub since: Tick,
     pub settled: u8,                      // ticks in Step::Settle
     pub missed: u8,                       // ticks below the grasp size without force

@@ -18,7 +18,7 @@ pub static CLOSED: Goal = Goal {
     unconfirmed: &[Unconfirmed::GraspForce],
 };
 
-/// VG-RELEASE, TG-RELEASE, VGRIP-POSE, TGRIP-POSE.
+/// Goal of VG-RELEASE, TG-RELEASE, VGRIP-POSE and TGRIP-POSE.
 pub static OPENED: Goal = Goal {
     holds: "the fingers are at the commanded size, or open",
     sensors: &[Sensor::Fingers],

@@ -21,8 +21,8 @@ pub const POTENTIOMETER_OFFSET: f64 = 205.0;
 pub const POTENTIOMETER_SCALE: f64 = 600.0;
 
 pub(super) const START_TICKS: u8 = 6; // from a change of the air until the fingers move
-/// Ticks until stopped fingers with closing air press (1 s, ASSUMED): the pressure must build up, also after a
-/// drop, and there are no force sensors (VI.4).
+/// Ticks until stopped fingers with closing air press (1 s, ASSUMED). The pressure must build up, also after a drop,
+/// and no force sensor shows it (VI.4).
 pub(super) const PRESSED_TICKS: u8 = 25;
 const SETTLED_TICKS: u8 = 5; // until a newly attached gripper is read
 pub(super) const LIMIT_TICKS: u64 = 100; // 4 s, for any travel

@@ -175,7 +175,7 @@ fn fingers_press_until_release() {
     bench.world.object = Some(2.0);
     assert_eq!(bench.execute(order(JawsVerb::Grasp, 1.95)), CLOSED);
     assert_eq!((bench.outputs().status.size, bench.outputs().valves.close), (200, true));
-    // The next command has no size: the last one stays valid.
+    // The next command has no size, so the last one stays valid.
     assert_eq!(bench.execute(order(JawsVerb::Pause, 0.0)), (JawsReport::AtPosition, Reason::None));
     assert!(bench.wait(100).valves.close, "still pressed");
     bench.world.object = None;
@@ -341,7 +341,7 @@ fn every_row_fires() {
     assert_eq!(silent, [""; 0]);
 }
 
-/// From every state, with fingers that move or do not, with and without the gripper.
+/// The search starts from every state, with fingers that move or do not, with and without the gripper.
 #[test]
 fn every_command_ends_from_every_state() {
     let worlds: Vec<_> = [(true, 3.0, 1), (true, 0.0, 1), (true, 3.0, 60), (false, 3.0, 1)]
@@ -368,8 +368,8 @@ fn every_command_ends_from_every_state() {
 }
 
 proptest! {
-    /// Random commands and sensors: no panic, no air to both sides or without the gripper, every command ends, and
-    /// the same inputs give the same bytes, also after a restore.
+    /// Random commands and sensors cause no panic, and no air to both sides or without the gripper. Every command ends,
+    /// and the same inputs give the same bytes, also after a restore.
     #[test]
     fn nonsense(ticks in prop::collection::vec((0_u8..30, any::<i32>(), any::<u8>(), any::<u16>()), 1..200)) {
         let (mut bench, mut twin) = (ToolBench::new(2.0), ToolBench::new(2.0));

@@ -33,7 +33,7 @@ pub static PASSING: Goal = Goal {
     age: 1,
     unconfirmed: &[Unconfirmed::Position],
 };
-/// GOTO-PT, DELTA-MOVE, GO-WHILE.
+/// Goal of GOTO-PT, DELTA-MOVE and GO-WHILE.
 pub static POINT: Goal = Goal {
     holds: "the robot rests at the point",
     sensors: &[Sensor::Resolvers],
@@ -56,7 +56,7 @@ pub static CALIBRATED: Goal = Goal {
     unconfirmed: &[],
 };
 
-/// Delay of a resolver reading, without the lag of the robot: T3 Interface, the line, and the reading.
+/// Delay of a resolver reading by T3 Interface, the line and the reading itself, without the lag of the robot.
 const HOPS_S: f64 = 3.0 * TICK_S;
 
 impl State {

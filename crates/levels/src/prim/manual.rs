@@ -1,4 +1,4 @@
-//! The joystick box moves the robot (III.3.3): a velocity instead of a goal.
+//! The joystick box moves the robot (III.3.3) by a velocity instead of a goal.
 //!
 //! Stick and buttons command a velocity in the coordinates of the frame switch. It is stored in world coordinates,
 //! with a limited change ([`ACCELERATION`]). So a sudden stick motion, a switch that is turned off and a rotation of
@@ -19,7 +19,7 @@ use rcs_core::{Plain, tick::TICK_S};
 pub const SPEED: f64 = 5.0;
 /// Greatest path acceleration, in/s². ASSUMED: that of a free path (VIII.10).
 pub const ACCELERATION: f64 = 10.0;
-/// Acceleration of a ramp, in/s²; the rest is for a tool point that swings about the wrist at [`SPEED`]: 5² / 30.
+/// Acceleration of a ramp, in/s². The rest, 5² / 30, is for a tool point that swings about the wrist at [`SPEED`].
 const RAMP: f64 = 9.0;
 /// Smaller deflections are treated as 0: potentiometers do not return to 0 exactly. ASSUMED.
 const PLAY: f64 = 0.03;
@@ -157,7 +157,7 @@ impl PrimManual {
         (self.linear, self.angular) = (linear.into(), angular.into());
         let centre = Vector::new(-self.coordinates.behind(), 0.0, 0.0);
         let turned = turned * frame.rotation;
-        // Rounding errors of thousands of products: make it a rotation again.
+        // Rounding errors of thousands of products accumulate, so the matrix is made a rotation again.
         let (x, y) = (turned.matrix().column(0).into_owned(), turned.matrix().column(1).into_owned());
         let rotation = rotation_from_x_y(&x, &y).unwrap_or(turned);
         Frame { position: frame.shifted(centre).position + moved, rotation }.shifted(-centre)

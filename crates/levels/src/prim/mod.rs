@@ -19,10 +19,10 @@
 //!     T3I: PAUSE         link off, link error, refused or silent T3I; a restart        T3I: POINT
 //! ```
 //!
-//! A motion also leads from the left to the right if T3I reports that the robot is at its commanded position. The
-//! command continues from rest there, so the robot is never commanded to jump to an assumed position. PAUSE ramps
-//! down and then repeats the last point under its number: T3I holds it, its queue is not cut short, and the commanded
-//! position stays exact. PAUSE goes to T3I only while Prim has no position.
+//! A motion also makes Prim positioned if T3I reports that the robot is at its commanded position. The command
+//! continues from rest there, so the robot is never commanded to jump to an assumed position. PAUSE ramps down and then
+//! repeats the last point under its number: T3I holds it, its queue is not cut short, and the commanded position stays
+//! exact. PAUSE goes to T3I only while Prim has no position.
 //!
 //! A stick or button that is moved while a frame switch is on stops every motion with `joystick-on`; only during
 //! PAUSE does the box move the robot. The sensors of guarded moves are in [`sensors`].

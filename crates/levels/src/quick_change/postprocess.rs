@@ -33,7 +33,7 @@ impl State {
                 end_effector_id: self.end_effector_id,
                 ring: self.reading,
             },
-            // With the port disabled the ring cannot move, regardless of the two air lines (VI.2.1 QC-LOCK): it is
+            // With the port disabled the ring cannot move, regardless of the two air lines (VI.2.1 QC-LOCK), so it is
             // enabled only while the ring is to turn.
             valves: QuickChangeValves { lock, unlock, port: lock || unlock },
         }

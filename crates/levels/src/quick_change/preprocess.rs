@@ -15,7 +15,7 @@ const GREATEST_ID: u8 = 3; // 1 parts, 2 v, 3 tool (III.3.6 to III.3.8); 0 witho
 
 impl State {
     /// `outputs` are those of the previous tick. A ring that had air when the process was restarted may still move in
-    /// this tick: it is read in the next one.
+    /// this tick, so it is read in the next one.
     pub(super) fn sense<Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,

@@ -223,7 +223,7 @@ fn restart_while_the_ring_turns_stops_it() {
     assert_eq!((bench.execute(QuickChangeVerb::Lock), bench.world.place), (LOCKED, 1.0));
 }
 
-/// The air of the previous tick may still turn it: the old reading is not valid.
+/// The air of the previous tick may still turn the ring, so the old reading is not valid.
 #[test]
 fn restarted_process_reads_a_ring_with_air_in_the_next_tick() {
     let mut bench = Bench::at(1.0);
@@ -277,7 +277,7 @@ fn ring_position_is_published_in_every_tick() {
         }
         verb.into_iter().for_each(|verb| bench.send(verb));
     }
-    // Half unlocked, then PAUSE: the report lags, the position does not.
+    // After PAUSE at a half unlocked ring, the report lags, but the position does not.
     let mut bench = Bench::at(1.0);
     bench.step();
     bench.send(QuickChangeVerb::Unlock);
@@ -316,7 +316,7 @@ fn restart_and_unknown_command_are_reported_with_the_ring() {
     assert_eq!(bench.execute(QuickChangeVerb::None).1, Reason::UnknownCommand);
 }
 
-/// From every step and reading, with a ring that turns, one that is stuck, and sensors that fail.
+/// The search starts from every step and reading, with a ring that turns or is stuck, and with failing sensors.
 #[test]
 fn every_command_ends_from_every_state() {
     let mut ends = std::collections::BTreeSet::new();
@@ -339,8 +339,8 @@ fn every_command_ends_from_every_state() {
 }
 
 proptest! {
-    /// Random commands and sensors: air and port only for a command that turns the ring and never longer than its
-    /// time limit, only legal ids, and the same inputs give the same bytes.
+    /// With random commands and sensors, air and port are on only for a command that turns the ring, within its time
+    /// limit, and ids are legal. The same inputs give the same bytes.
     #[test]
     fn the_ring_is_moved_only_by_command(
         readings in prop::collection::vec((any::<bool>(), any::<bool>(), any::<u8>(), 0_u8..40), 1..300)

@@ -53,7 +53,7 @@ pub static PLACED: Goal = Goal {
     age: 3,
     unconfirmed: &[Unconfirmed::PartInFingers],
 };
-/// MOVE-OBJ>D.
+/// Goal of MOVE-OBJ>D.
 pub static BROUGHT: Goal = Goal {
     holds: "the robot is at the location and holds the object in the destination grip",
     sensors: &[Sensor::Resolvers, Sensor::Fingers, Sensor::StrainGages],
@@ -61,7 +61,7 @@ pub static BROUGHT: Goal = Goal {
     age: 3,
     unconfirmed: &[Unconfirmed::Position, Unconfirmed::GraspForce, Unconfirmed::PartInFingers],
 };
-/// GOTO-ENDPT, GOTO-DEST, >POSITION.
+/// Goal of GOTO-ENDPT, GOTO-DEST and >POSITION.
 pub static PLACE: Goal = Goal {
     holds: "the robot is at the location",
     sensors: &[Sensor::Resolvers],

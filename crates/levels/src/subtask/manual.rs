@@ -117,7 +117,7 @@ pub(super) fn robot_there(memory: &CommonMemory, data: &TaskData<'_>) -> RobotTh
     }
 }
 
-/// A robot at another place is clear; one at no known place if it is idle and its tool is far from PEDESTAL.
+/// A robot at another place is clear. One at no known place is clear if it is idle and its tool far from PEDESTAL.
 fn is_clear(emove: &EmoveStatus, memory: &CommonMemory, data: &TaskData<'_>) -> bool {
     let pedestal = data.locpt_named(&Name10::clipped(named::PEDESTAL));
     match emove.at {

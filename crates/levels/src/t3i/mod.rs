@@ -18,8 +18,8 @@
 //! When the link starts again the controller reports the position of the robot. T3I compares the words of the
 //! report with those that it sent, and publishes the result (`check`): Prim continues, or the operator decides.
 //!
-//! While the link runs, T3I compares the resolvers with the path that it has sent in the time of the expected lag.
-//! A robot that is off this path is stopped (`following`, `left`): the rest of the motion would be a short cut.
+//! While the link runs, T3I compares the resolvers with the path that it has sent in the time of the expected lag. A
+//! robot that is off this path is stopped (`following`, `left`), because the rest of the motion would be a short cut.
 //!
 //! Four tables decide in a tick: REPORT, RECEIVE for the command in the buffer, FOLLOW for the robot, then the table
 //! of the current command for the output.
@@ -62,7 +62,7 @@ pub struct T3i {
 }
 
 impl Default for T3i {
-    /// With the limits of 40 ms and three ticks for an answer.
+    /// Has the limits of 40 ms, and a time limit of three ticks for an answer.
     fn default() -> Self {
         Self { state: State::nbs() }
     }
@@ -108,7 +108,7 @@ impl<Data: ?Sized> Process<Data> for T3i {
         state.supervise(followed.action, seen);
         let choice = of_command(state.command, state.step, &state.situation(seen));
         state.step = choice.next;
-        // The last row decides: that of RECEIVE if it refuses the command.
+        // The last row decides, which is that of RECEIVE if it refuses the command.
         if matches!(taken.action, T3iIntake::Ignore | T3iIntake::Refuse) {
             state.rows.decide(&choice);
             state.rows.decide(&taken.of(number::RECEIVE));

@@ -22,7 +22,7 @@ use super::{
     },
 };
 
-/// Counts per word by which a report may differ from the sent position: both ends round.
+/// Counts per word by which a report may differ from the sent position, because both ends round.
 const NEAR_COUNTS: i32 = 2;
 const TICK_MS: u16 = 40;
 
@@ -37,7 +37,7 @@ impl State {
             (self.sent, self.check) = (outputs.status.sent, outputs.status.check);
             (self.following, self.left) = (outputs.status.following, outputs.status.left);
         }
-        // Before the line is read: a position of this tick has not reached the robot.
+        // The resolvers are compared before the line is read: a position of this tick has not reached the robot.
         let resolvers = resolver_frame(&inputs.external.devices.resolvers);
         let followed = self.followed(&resolvers, inputs);
         let (event, place) = self.receive_bytes(inputs);
@@ -89,7 +89,7 @@ impl State {
     fn receive_bytes<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> (HostEvent, Reported) {
         let devices = &inputs.external.devices;
         self.host.set_silence_limit(devices.link_patience.unwrap_or(SILENCE_LIMIT_TICKS));
-        // First: a port that has taken part of a frame is not ready either, and this fault is more specific.
+        // The torn frame is tested first: its port is not ready either, but this fault is more specific.
         let torn = if devices.link_unsent { self.host.unsent() } else { HostEvent::None };
         let event = self.host.receive(&devices.link_rx, devices.link_ready).max(torn);
         match event {
@@ -183,7 +183,7 @@ impl State {
     }
 }
 
-/// True if the frame is one and its end plate has words on the line.
+/// True if the frame is valid and words on the line can express its end plate.
 fn has_words(frame: &WireFrame, near: &Plate) -> bool {
     frame.to_frame().is_ok_and(|tool| Plate::from_tool(&tool, &T3, near).is_ok())
 }

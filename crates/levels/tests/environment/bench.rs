@@ -190,7 +190,7 @@ impl<P: Tested<Data>, W: World<P>, Data> Bench<P, W, Data> {
         })
     }
 
-    /// Interrupt a command at every tick, in each of some ways, and send it again: `judge` finishes it. The result
+    /// Interrupt a command at every tick, in each of some ways, and send it again; `judge` then finishes it. The result
     /// must not depend on the interrupted part.
     pub fn sent_again(
         &self,

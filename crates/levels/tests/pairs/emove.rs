@@ -82,8 +82,8 @@ pub struct Around<G: Fingered> {
 
 pub type Pair<G> = frame::Pair<Around<G>>;
 
-/// The first tick of a started system, with a calibrated gripper that is open around the object. These commands can
-/// arrive, `early` of them before the last one has ended (any number for `None`), and this many `restarts`.
+/// The first tick of a started system, with a calibrated gripper that is open around the object. The commands can
+/// arrive, `early` of them before the last one has ended (any number for `None`), and `restarts` restarts occur.
 pub fn first<G: Fingered>(commands: &[Line], early: Option<u8>, restarts: u8) -> Pair<G> {
     let (object, grip, location) = G::OBJECT;
     let at = place(location);

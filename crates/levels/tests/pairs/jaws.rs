@@ -130,7 +130,7 @@ impl<S: Side> Fingered for Jaws<S> {
         Self { half: Half { state, out }, side: PhantomData }
     }
 
-    /// Fingers at rest have stopped for their process, at any place.
+    /// The process treats fingers at rest as stopped, at any place.
     fn next(&self, fingers: Fingers) -> Vec<(Fingers, bool)> {
         use Fingers::{Closed, Holding, Open, Wide};
         let valves = self.half.out.valves;

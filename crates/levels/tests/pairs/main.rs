@@ -268,8 +268,8 @@ const CHANGING_TOOLS: &[prim::Line] = &[
     (EmoveVerb::Pause, ""),
 ];
 
-/// At the drum, with guarded moves: this many unusual events, commands that interrupt a motion, and faults. The pair
-/// comes to rest within `any` ticks.
+/// Searches guarded moves at the drum, with so many unusual events, commands that interrupt a motion, and faults. The
+/// pair comes to rest within `any` ticks.
 fn guards(name: &str, commands: usize, (unusual, motions, faults): (u8, u8, u8), any: u32) {
     let first = prim::Pair::at_drum(&CHANGING_TOOLS[..commands], unusual, motions, faults);
     let found = is_sound(name, first, 1_000_000);

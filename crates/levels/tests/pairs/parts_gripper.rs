@@ -8,7 +8,7 @@ use rcs_core::tick::Tick;
 
 use crate::{image::Image, search::Wrong};
 
-/// Opening with the part, empty and closed, and half-way of an order to open, 0.01 in.
+/// Openings with the part, closed and empty, and half-way through an order to open, 0.01 in.
 const PART: i32 = 66;
 const PASSED: i32 = 54;
 const HALF: i32 = 80;
@@ -19,11 +19,11 @@ const FORCE: i32 = 30;
 pub enum GripDoes {
     /// Nothing new; a new order is taken.
     Goes,
-    /// It ends the order. Closing fingers have a part between them.
+    /// Grip ends the order. Closing fingers have a part between them.
     Ends,
-    /// It fails. Fingers keep their object, and closing fingers have a part between them.
+    /// Grip fails. Fingers keep their object, and closing fingers have a part between them.
     Fails,
-    /// It fails, if it has an order. The fingers lose their object.
+    /// Grip fails, if it has an order. The fingers lose their object.
     Loses,
 }
 

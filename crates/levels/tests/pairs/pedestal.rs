@@ -42,7 +42,7 @@ pub enum HandDoes {
 /// Reaction of the motor to its order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotorDoes {
-    /// Nothing new: it takes no new order, and continues the one that it has taken.
+    /// The motor takes no new order, and continues the one that it has taken.
     Goes,
     Takes,
     Arrives,
@@ -282,7 +282,7 @@ impl Scene for Around {
         rebase(&mut pedestal.hand, &mut [&mut out.hand.number, &mut pair.scene.hand.echo]);
         let echo = &mut table.execution.receiver.echo;
         rebase(&mut pedestal.table, &mut [&mut out.table.number, echo, &mut pair.lower.out.status.echo]);
-        // A motor takes the last order or none: the number of missed orders does not matter.
+        // A motor takes the last order or none, so the number of missed orders does not matter.
         let taken = table.motor.number == pair.scene.motor.motor_echo;
         if table.order.number != 0 {
             let numbers =

@@ -50,19 +50,18 @@ const PAUSE: Line = (EmoveVerb::Pause, "");
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Link {
-    /// It requests no point, or does not start yet.
+    /// T3 Interface requests no point, or does not start yet.
     Busy,
-    /// It requests points, or starts after RESTART, until a process reports something new.
+    /// T3 Interface requests points, or starts after RESTART, until a process reports something new.
     Goes,
-    /// The same until half of the way to Prim's goal is left, and a quarter for a GO-UNTIL, where its condition is
-    /// met.
+    /// The same until half of the way to Prim's goal is left; for a GO-UNTIL a quarter, where its condition is met.
     Half,
-    /// It reports an error: of the link, of the line, of a command; or the controller's DTR goes off.
+    /// T3 Interface reports an error of the link, the line or a command, or the controller's DTR goes off.
     Fails(LinkFault, bool),
     Silent, // T3 Interface does not write
-    /// The robot is off the commanded pose: after RESTART T3 Interface detects it.
+    /// The robot is off the commanded pose, which T3 Interface detects after RESTART.
     Aside,
-    /// It requests no point, and E-move or Prim is restarted.
+    /// T3 Interface requests no point, and E-move or Prim is restarted.
     Restart(DeliveryFault),
 }
 

@@ -16,17 +16,17 @@ use crate::{data::data, image::Image, search::Wrong};
 pub enum PrimDoes {
     /// Nothing new; a new order is taken.
     Goes,
-    /// It ends the order: the robot is at its goal.
+    /// Prim ends the order, with the robot at its goal.
     Ends,
-    /// It fails. The robot stays in place.
+    /// Prim fails. The robot stays in place.
     Fails,
-    /// It fails, since the link does. The robot stays in place.
+    /// Prim fails, because the link does. The robot stays in place.
     LinkFails,
     /// The robot has gone half of the way from a goal, and continues.
     Half,
     /// The robot is at its goal, and Prim does not report it yet.
     Arrives,
-    /// It ends a GO-UNTIL whose condition is not met.
+    /// Prim ends a GO-UNTIL whose condition is not met.
     Misses,
 }
 

@@ -71,7 +71,7 @@ pub struct Found<Event> {
 const NONE: u32 = u32::MAX;
 
 struct Space<Event> {
-    /// By a fingerprint of 64 bits: two of a million states are alike with a chance of 1 in 37 million.
+    /// States by a fingerprint of 64 bits. Two of a million states share one with a chance of 1 in 37 million.
     known: HashMap<u64, u32>,
     from: Vec<(u32, Option<Event>)>,
     rests: Vec<bool>,
@@ -96,7 +96,7 @@ impl<Event: Copy> Space<Event> {
         (number, number == next)
     }
 
-    /// The ticks to a state, and one more.
+    /// The ticks to a state, followed by `last`.
     fn way(&self, mut state: u32, last: Option<Event>) -> Vec<Event> {
         let mut way = Vec::from_iter(last);
         while state != NONE {

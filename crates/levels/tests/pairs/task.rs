@@ -33,13 +33,13 @@ const REPLACED: u8 = 6; // ticks for which E-move continues an order of a replac
 pub enum EmoveDoes {
     /// Nothing new; a new order is taken.
     Goes,
-    /// It ends the order: done, or given up if the operator has the robot.
+    /// E-move ends the order, or gives it up if the operator has the robot.
     Ends,
     /// The order fails. A held object stays, and a grasp has closed on an object.
     Fails,
     /// The order fails. A held object is lost, and a grasp has closed empty.
     Loses,
-    /// It ends a pause, and the fingers have finished an earlier release.
+    /// E-move ends a pause, and the fingers have finished an earlier release.
     LetsGo,
     Silent,
 }
@@ -106,7 +106,7 @@ impl Pair {
         self
     }
 
-    /// `prompt`: the Data System accepts every request at once.
+    /// If `prompt`, the Data System accepts every request at once.
     pub const fn promptly(mut self, prompt: bool) -> Self {
         self.scene.prompt = prompt;
         self
@@ -331,7 +331,7 @@ impl Scene for Around {
         let echo = &mut subtask.execution.receiver.echo;
         rebase(&mut task.subtask, &mut [&mut out.subtask.number, echo, &mut pair.lower.out.status.echo]);
         rebase(&mut subtask.emove, &mut [&mut pair.lower.out.emove.number, &mut pair.scene.emove.echo]);
-        // The Data System answers the last request: the number of missed ones does not matter.
+        // The Data System answers the last request, so the number of missed ones does not matter.
         let asked = &mut task.data_system;
         if asked.commander.number != 0 {
             pair.scene.data_base.echo =

@@ -20,12 +20,12 @@ pub struct Table {
     /// Given if the table declares a struct of the variables that its rows name.
     pub senses: Option<Path>,
     pub action: Path,
-    /// Passed on by a row that does not decide.
+    /// The value that a row passes on if it does not decide.
     pub passed: Option<Passed>,
     pub groups: Vec<StepGroup>,
 }
 
-/// Declared by the groups of the table, or named.
+/// The steps are declared by the groups of the table, or belong to a named enum.
 pub enum Step {
     Declared(Ident),
     Named(Path),

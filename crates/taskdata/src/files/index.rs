@@ -1,10 +1,10 @@
 //! Indexes: a look-up other than by record number reads one pilot and one slot, for any number of records.
 //!
 //! A key is three integers: usually a name, and a grip and a location packed into one. The index is a perfect hash
-//! table: a hash selects one of many small buckets, the bucket's *pilot*, one byte, is mixed into the hash, and the
-//! result selects the slot. The loader chooses pilots so that no two keys share a slot. The pilots of 100,000 keys (33
-//! kB) stay in the processor's cache; the slot is one read of half a cache line. It contains the record number and,
-//! where look-ups need only one field, that field.
+//! table: a hash selects one of many small buckets. The bucket's *pilot*, one byte, is mixed into the hash; the result
+//! selects the slot. The loader chooses pilots so that no two keys share a slot. The pilots of 100,000 keys (33 kB)
+//! stay in the processor's cache; the slot is one read of half a cache line. It contains the record number and, where
+//! look-ups need only one field, that field.
 //!
 //! An entry valid at a location is looked up at the location point, the array on it, the owners, and the wild card in
 //! turn. All such entries of one name and grip share a slot of a [`PlaceIndex`], so one cache line shows the locations
@@ -60,7 +60,7 @@ fn scaled(value: u64, end: usize) -> usize {
     usize::try_from(product(value, u64::try_from(end).unwrap_or(0)).0).unwrap_or(0)
 }
 
-/// Folded multiplications: the exclusive or of the two halves of a product.
+/// Hashes by folded multiplications: each takes the exclusive or of the two halves of a product.
 pub(crate) fn hash_of(key: Key, seed: u64) -> u64 {
     let fold = |(high, low): (u64, u64)| high ^ low;
     let [upper, lower] = key.main;
@@ -171,7 +171,7 @@ pub struct PlaceIndex<'a> {
 }
 
 impl<'a> PlaceIndex<'a> {
-    /// The entry of the first location that has one: `exact` ones, `owners`, wild card. Ignores the key's location.
+    /// The entry of the first location with one, in the order `exact`, `owners`, wild card. Ignores the key's location.
     pub(crate) fn first(
         &self,
         key: Key,
@@ -289,7 +289,7 @@ pub fn name_at_key<const N: usize>(name: &Name<N>, at: Reference) -> Key {
     Key { main: name_bits(name), rest: reference_bits(at) }
 }
 
-/// The key of an approach or depart at an object or its view; `None` as [`grip_key`].
+/// The key of an approach or depart at an object or its view; returns `None` like [`grip_key`].
 #[must_use]
 pub fn approach_key<const N: usize>(
     direction: Direction,

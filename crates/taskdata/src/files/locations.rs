@@ -228,7 +228,7 @@ impl<'a> TaskData<'a> {
         Some(repeat(repeat(first, array.column_step, column), array.row_step, row))
     }
 
-    /// The steps from a sector out of its array, in the axes of the sector, in; `None` in a direction with a
+    /// The steps that lead out of the array from a sector, in inches along its axes; `None` in a direction with a
     /// neighbour. The base is that of [`sector_frame`](Self::sector_frame); columns and rows are perpendicular.
     #[must_use]
     pub fn steps_out(&self, array: &Array, base: &Frame, sector: &Frame) -> [Option<Vector>; 4] {
@@ -246,7 +246,7 @@ impl<'a> TaskData<'a> {
         [left, right, top, bottom]
     }
 
-    /// The place for a process that does not receive the sector, only its goal pose (V.3.2, V.2.2): with the array to
+    /// The place for a process that receives only the goal pose, not the sector (V.3.2, V.2.2). It has the array to
     /// which the object is assigned there, or else the location point. `None` for an unknown name.
     #[must_use]
     pub fn place_named<const N: usize, const M: usize>(

@@ -17,7 +17,7 @@ pub struct PoseRecord {
     pub name: Name10,
     pub pose: Pose,          // as entered, 0.01 in
     pub movetable: MovtabId, // corrects the pose; null for `...`
-    /// The frame of the points, made orthogonal (X kept), with the movetable applied. World, inches.
+    /// The orthogonal frame of the points (X is kept), after the movetable; world coordinates, inches.
     pub frame: Frame,
 }
 
@@ -240,8 +240,8 @@ pub struct ApprDept {
     pub path: PathId,
 }
 
-/// The signal that a guarded move watches (III.3.4, III.3.6, III.3.8). The manual has no form for sensors; the words
-/// are of this project.
+/// The signal that a guarded move watches (III.3.4, III.3.6, III.3.8). The manual has no form for sensors; this project
+/// chose the words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum SensorSource {
     /// Force along the tool's X.
@@ -278,8 +278,7 @@ pub struct SensorPara {
     pub source: SensorSource,
     /// Holster: 1 right, 2 left, 3 centre. Beam: 1 to 8, 0 for any. Forces: 0.
     pub which: i32,
-    /// Forces only: the condition is true at this value and beyond it, away from 0; signed, lb or in lb on the
-    /// tool.
+    /// For forces: the condition is true from this signed value on, away from 0; lb or in lb on the tool.
     pub threshold: i32,
 }
 

@@ -56,7 +56,7 @@ impl Collected {
         }
     }
 
-    /// Replaces entries by `newer` ones with the same key, all earlier object locations of an object too, and appends
+    /// Replaces entries by `newer` ones with the same key, and all object locations of an object by newer ones. Appends
     /// the others. If `newer` has a key twice, the second is appended, so that linking finds the duplicate.
     pub fn with(&self, newer: Self) -> Self {
         let mut all = self.clone();

@@ -168,8 +168,7 @@ impl Loader<'_, '_> {
         let roots: Vec<BlockNumber> = ROOTS.into_iter().filter(|root| self.all.contains_key(root)).collect();
         let directed: BTreeSet<u32> = roots.iter().map(|root| root.offset).collect();
         let undirected = order.iter().copied().filter(|block| !directed.contains(&block.offset));
-        // A stack: a block is read where it is named, as in FORTH, but a directory that names itself causes no endless
-        // loop.
+        // The stack reads a block where it is named, as in FORTH. A directory that names itself causes no endless loop.
         let mut open: Vec<(BlockNumber, Option<At>)> =
             roots.into_iter().chain(undirected).map(|b| (b, None)).collect();
         open.reverse();

@@ -38,7 +38,7 @@ const fn known(name: &'static str, from: Beginning, guarded: bool) -> KnownMove 
     KnownMove { name, from, guarded }
 }
 
-/// All that commands look up (V.2.1), in the order of a command.
+/// All relative moves that commands look up (V.2.1), in the order of each command.
 pub const RELATIVE_MOVES: &[KnownMove] = &[
     known("QCD-DOWN", Beginning::Location, true),
     known("QCD-SEAT", Beginning::After("QCD-DOWN"), true),

@@ -46,7 +46,7 @@ impl<C: Cells> Table<C> {
         if pairs.is_empty() {
             return Self::default();
         }
-        // One fifth of the slots stays free: fewer would take longer here, more would fill the cache.
+        // One fifth of the slots stays free. Fewer free slots would slow down the build, more would fill the cache.
         let slots = pairs.len() + pairs.len() / 4 + 1;
         (0..).find_map(|seed| Self::placed(pairs, slots, seed)).unwrap_or_default()
     }

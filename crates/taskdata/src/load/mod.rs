@@ -60,7 +60,7 @@ impl Store {
         Self::default().loaded_with(sources, problems)
     }
 
-    /// Data with errors are used, too: [`Store::faults_of`] lists the errors that concern a command.
+    /// Loads data with errors, too. [`Store::faults_of`] lists the errors that concern a command.
     #[must_use]
     pub fn load_with_faults(directory: &Path) -> (Self, Diagnostics) {
         Self::load_part(directory).unwrap_or_else(|(part, report)| (part.store, *report))
@@ -84,7 +84,7 @@ impl Store {
     /// locations get new numbers.
     ///
     /// All blocks of the texts are loaded, unless the texts have a root directory block, which may also name existing
-    /// blocks. The whole new generation is checked, and not made after an error that these data lack.
+    /// blocks. The whole new generation is checked. An error that these data do not have prevents it.
     pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let (part, report) = match self.loaded_with(texts, Problems::default()) {
             Ok(loaded) => return Ok(loaded),
@@ -173,7 +173,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// Probably a misspelling of `near`, the nearest known name. Another name may be in an unreadable entry.
+    /// True if `name` is probably a misspelling of `near`, the nearest known name, and not in an unreadable entry.
     fn is_slip(&self, name: &str, near: Option<&str>) -> bool {
         near.is_some() && !self.unread.iter().any(|word| word.starts_with(name))
     }

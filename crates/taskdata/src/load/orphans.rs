@@ -102,7 +102,7 @@ impl Orphans {
         }
     }
 
-    /// Marks orphans that another orphan names. Returns the naming ones, each with the number of the others.
+    /// Marks orphans that another orphan names. Returns the orphans that name others, each with their number.
     fn gather(&mut self) -> BTreeMap<BlockNumber, usize> {
         let named: HashSet<BlockNumber> =
             self.list.iter().flat_map(|orphan| &orphan.loads).map(|line| line.block).collect();
@@ -137,7 +137,7 @@ impl Orphans {
         if self.incomplete {
             return;
         }
-        // Its header may be unreadable, or its number invalid: already reported.
+        // The block's header may be unreadable or its number invalid, which is already reported.
         let unreadable = |o: &Orphan| {
             o.number.offset == BlockNumber::UNREADABLE
                 || o.number.offset == line.block.offset && o.number.number > LAST_BLOCK

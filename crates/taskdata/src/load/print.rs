@@ -23,8 +23,8 @@ pub fn form(entry: &Entry) -> Vec<String> {
     if lines.len() <= BLOCK_LINES { lines } else { filled(&parts.concat()) }
 }
 
-/// Blocks from `first` at `offset` on. Block 999 is followed by block 0 of the next offset. An entry with more lines
-/// than a block gets its own block, which cannot be loaded.
+/// Prints blocks from `first` on, at `offset`. Block 999 is followed by block 0 of the next offset. An entry with more
+/// lines than a block gets its own block, which cannot be loaded.
 #[must_use]
 pub fn blocks<'e>(entries: impl IntoIterator<Item = &'e Entry>, offset: u32, first: u32) -> String {
     let (mut offset, mut number) = (offset, first);

@@ -28,7 +28,7 @@ use super::{
 };
 use crate::places::named;
 
-/// Farther from the place of its last motion, the robot has left it (docs/design/motion.md "Where the robot is").
+/// Farther than this, a robot has left the place of its last motion (docs/design/motion.md "Where the robot is").
 pub(super) const LOST_INCHES: f64 = 0.5;
 pub(super) const LOST_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0; // 2 degrees
 pub(super) const ASIDE_INCHES: f64 = 0.35; // to a segment into a holster or the drum: the robot is on it
@@ -92,8 +92,8 @@ impl Localization {
         }
     }
 
-    /// A robot at rest is not on a path that it has left. `is_moving`: by an order to Prim. `is_half_way`: in a
-    /// gripper exchange, or at the tool drum.
+    /// A robot at rest is not on a path that it has left. `is_moving` is true during an order to Prim, `is_half_way` in
+    /// a gripper exchange or at the tool drum.
     pub(super) fn knowledge(
         &self,
         is_moving: bool,
@@ -161,7 +161,7 @@ impl Localization {
         (self.place, self.way, self.away) = (Some(at), None, false);
     }
 
-    /// Relative moves have ended at the command's location.
+    /// Records that relative moves have ended at the command's location.
     pub(super) fn stand(&mut self, gone_to: GoneTo, command: &EmoveCommand, memory: &CommonMemory) {
         if let Some(pose) = commanded_pose(memory) {
             (self.place, self.away) = (Some(robot_at(command, gone_to, pose)), false);
@@ -172,7 +172,7 @@ impl Localization {
         self.place = at;
     }
 
-    /// A relative move begins: the robot is at no place, and on no path.
+    /// Notes that a relative move begins, so the robot is at no place and on no path.
     pub(super) const fn leave(&mut self) {
         (self.place, self.way) = (None, None);
     }

@@ -83,8 +83,8 @@ fn moves(memory: &CommonMemory) -> bool {
     }
 }
 
-/// True if a commanded pose is at most one tick of motion from the previous one. It is farther along the segment
-/// after ticks in which E-move was held, and after a restart of the link where the arm was.
+/// True if a commanded pose is at most one tick of motion from the previous one. After ticks in which E-move was held,
+/// it may be farther along the segment; after a restart of the link, it may be where the arm was.
 fn follows(commanded: &Pose, way: &Way, data: &TaskData<'_>) -> bool {
     let (Ok(now), Ok(before)) = (commanded.to_frame(), way.rest.to_frame()) else { return false };
     let within = |ticks: f64| near(&now, &before, ticks * STEP_INCHES, ticks * STEP_RADIANS);
@@ -127,7 +127,7 @@ impl Localization {
         if way.is_some() {
             (self.place, self.way) = (None, way);
         } else if let (Some(way), Course::Known) = (&mut self.way, self.track.course) {
-            // A robot that returns from farther away has left its path, and is at no place: both stay as they are.
+            // A robot that returns from farther away has left its path and is at no place, so both stay as they are.
             way.rest = rest;
         }
     }

@@ -40,11 +40,11 @@ use crate::{
     places::is_in_mbd,
 };
 
-/// Shift of the hand by a closing vise or pedestal: the part has 0.06 in of play (docs/cell.md "Budget"), and the
-/// fingers yield.
+/// A closing vise or pedestal shifts the hand by at most this, in: the part has 0.06 in of play (docs/cell.md
+/// "Budget"), and the fingers yield.
 const CLAMP_INCHES: f64 = 0.1;
 const CLAMP_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0; // half a degree
-/// From here a robot moves straight to a resting place: the short distance of IV.3.3 step 19 (ASSUMED).
+/// A robot within this short distance (IV.3.3 step 19) moves straight to a resting place. ASSUMED.
 const RESTING_INCHES: f64 = 12.0;
 const RESTING_RADIANS: f64 = 45.0 * core::f64::consts::PI / 180.0; // 45 degrees
 const NEST_INCHES: f64 = 2.0; // within which a robot leaves a nest along its approach line

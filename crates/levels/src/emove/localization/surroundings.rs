@@ -43,7 +43,7 @@ impl Surroundings {
     }
 }
 
-/// False in a holster, at the tool drum and at the pedestal: the departure depends on gripper, tool and part.
+/// False in a holster, at the tool drum and at the pedestal, where the departure depends on gripper, tool and part.
 pub(super) fn is_plain(site: &Site, data: &TaskData<'_>) -> bool {
     let has = |relative: Relative| relative.record(site, data).is_some();
     !has(Relative::QcaBack) && !has(Relative::InsIn) && site.location.as_str() != named::PEDESTAL

@@ -28,12 +28,12 @@ use crate::emove::{
     },
 };
 
-/// Distance between two records: the joystick box moves the robot 0.2 in per tick, and a process may miss two ticks.
+/// Distance between two recorded poses. The box moves the robot 0.2 in per tick, and a process may miss two ticks.
 const STEP_INCHES: f64 = 0.6;
 const STEP_RADIANS: f64 = 0.05;
 const SPACING_INCHES: f64 = 0.1; // between recorded poses
 const SPACING_RADIANS: f64 = core::f64::consts::PI / 180.0; // 1 degree
-/// Distance from the start of a segment that sets its direction: poses are rounded to 0.01 in.
+/// Distance from the start of a segment that sets its direction. Less is inexact, since poses are rounded to 0.01 in.
 const AIM_INCHES: f64 = 0.5;
 /// Distance from the line of a segment that is extended; less than the spacing, so that a corner starts a new one.
 const ASIDE_INCHES: f64 = 0.05;

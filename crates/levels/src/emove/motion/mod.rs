@@ -28,7 +28,7 @@ use super::{
     tables::{EmoveContact, Initialization, Pause},
 };
 
-/// A GO-UNTIL ends after 1 s of not-detected: the robot is at rest, and no later contact is expected.
+/// A GO-UNTIL ends after 1 s of not-detected. The robot is then at rest, and no later contact is expected.
 const DETECTION_TICKS: u32 = 25;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -176,8 +176,8 @@ impl EmoveMotion {
         self.send(PrimVerb::RobotInit, inputs, outputs);
     }
 
-    /// GO-THRU or GOTO-PT with the next point, of the route or back along `track`. Returns the robot's path; `None` on
-    /// its return to one. `is_straight` belongs to the retraced path; `rest` is the last commanded pose.
+    /// Sends GO-THRU or GOTO-PT with the next point of the route, or back along `track`. Returns the robot's path;
+    /// `None` on its return to one. `is_straight` belongs to the retraced path; `rest` is the last commanded pose.
     pub(super) fn send_leg(
         &mut self,
         verb: PrimVerb,

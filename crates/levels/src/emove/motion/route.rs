@@ -66,7 +66,7 @@ pub enum Ahead {
 pub struct Route {
     pub from: RobotPlace,
     pub to: RobotPlace,
-    /// Relative to the pose of departure; the approach points in reverse after bringing an object, or without others.
+    /// Relative to the pose of departure. It is the approach in reverse with a brought object, or if no depart exists.
     pub depart: PathId,
     pub between: PathId,
     /// Points relative to the goal, and the stop.
@@ -147,7 +147,7 @@ pub fn approach_to(at: &RobotPlace, data: &TaskData<'_>) -> Option<PathId> {
     }
 }
 
-/// True if it leaves by its approach path in reverse: with an object that it brought, or without a depart path.
+/// True if the robot leaves along its approach in reverse, because it brought an object or has no depart path.
 fn takes_out(from: &RobotPlace, data: &TaskData<'_>) -> bool {
     match from.gone_to {
         GoneTo::Brought(_) => true,
@@ -182,8 +182,8 @@ impl Route {
         let depart = match from.gone_to {
             GoneTo::Drum => return Err(Planning::InDrum),
             GoneTo::Location => data.depart_location(&start),
-            // With the object the robot leaves as it came, since the depart path may be for empty fingers. The same
-            // applies without a depart path, as above a holster.
+            // With the object the robot leaves along its approach, since the depart path may be for empty fingers. The
+            // same applies without a depart path, as above a holster.
             GoneTo::Object(ObjectGrip { object, grip }) | GoneTo::Brought(ObjectGrip { object, grip }) => {
                 if takes_out(from, data) {
                     data.approach(&object, grip, &start)

@@ -34,7 +34,7 @@ pub enum Near {
     Nothing,
     /// A resting place, near enough for a straight return.
     Resting,
-    /// Not relevant: the robot is off the approach of the nest that it has left, but within its outermost point.
+    /// Any location: the robot is off the approach of the nest that it has left, but within its outermost point.
     Nest,
 }
 

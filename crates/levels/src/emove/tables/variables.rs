@@ -328,6 +328,6 @@ pub enum EmoveReach {
 pub enum Tries {
     /// Another picture with other parameters is allowed.
     Left,
-    /// No.
+    /// No other picture is allowed.
     Spent,
 }

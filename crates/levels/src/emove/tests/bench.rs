@@ -191,7 +191,7 @@ impl Bench {
         self.run(EmoveVerb::Pause, "", 0, "", 0)
     }
 
-    /// PAUSE at once. Returns the number of motions commanded to Prim before.
+    /// Sends PAUSE at once. Returns the number of motions commanded to Prim before.
     pub fn stop(&mut self) -> usize {
         assert_eq!(self.execute(PAUSE), DONE, "{:?}", self.world.log);
         let motions = self.motions().len();

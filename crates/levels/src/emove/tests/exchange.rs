@@ -108,8 +108,8 @@ fn gripper_closes_on_the_way_to_its_holster() {
     assert_eq!(bench.log(), ["POSITION", "GO-THRU", "GO-THRU A/D-5"], "the final motion waits");
 }
 
-/// No depart path is written for a gripper: the exchange moves the robot up. For another goal it first leaves as it
-/// came, not straight to the first point of the trajectory.
+/// No depart path is written for a gripper: the exchange moves the robot up. For another goal it first leaves along its
+/// approach, not straight to the first point of the trajectory.
 #[test]
 fn robot_above_a_holster_leaves_upward() {
     let mut bench = above(1);

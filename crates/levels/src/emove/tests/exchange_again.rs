@@ -145,7 +145,7 @@ fn exchange_resumes_from_each_position() {
     from(FAST, 0, true, 0b1111, detach(1), "QC-UNLOCK");
     from(BARE, 0, false, 0b1111, detach(1), "DELTA-MOVE QCD-UP");
     from(ABOVE, 0, false, 0b1111, detach(1), "");
-    // At the seat, but the small sensors do not see it yet.
+    // The gripper is at the seat, but the small sensors do not detect it yet.
     from(SEAT, 1, false, SLIPPED, detach(1), "GO-UNTIL QCD-SEAT HOL-SEAT");
     // The gripper lies at its seat, and the robot is above it, where QCD-SEAT has ended.
     let mut bench = halfway(OVER, 1, false, 0b1111);
@@ -172,7 +172,7 @@ fn impossible_attach_is_reported() {
     fails(RAISED, 0, false, 0b1111, Reason::NotAttached);
     fails(RAISED, 1, false, 0, Reason::RingNotLocked);
     fails(FAST, 1, true, 0b0001, Reason::RingNotLocked);
-    // Done at once far from its holster.
+    // The command is done at once far from its holster.
     let mut bench = halfway(AWAY, 1, true, 0);
     assert_eq!(bench.perform(attach(1)), DONE);
     assert!(bench.log().is_empty());
@@ -523,7 +523,7 @@ fn jaws_without_air_have_no_grasp() {
 
 #[test]
 fn unknown_contents_are_treated_as_held() {
-    // Not calibrated: it may hold an object.
+    // An uncalibrated gripper may hold an object.
     let blind = |location: &str| {
         let mut bench = Bench::new(location, 1);
         bench.world.grip.initialized = false;

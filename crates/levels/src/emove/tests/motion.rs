@@ -279,7 +279,7 @@ fn part_without_contact_force_is_lost() {
     bench.hold("BLOCK", 100, 1);
     bench.command(MovObjTo, "BLOCK", 1, "VISE", 1);
     bench.wait(6);
-    // A short dip is not a loss: noise, or a part pushed to the other finger.
+    // A short dip is not a loss, but noise or a part that is pushed to the other finger.
     bench.world.grip.force = 0;
     bench.wait(3);
     bench.world.grip.force = 30;
@@ -483,7 +483,7 @@ fn located_object_is_discarded_after_a_lost_link() {
 
 #[test]
 fn implausible_picture_moves_nothing() {
-    // The picture of BLOCK is taken from 590 mm: it ends before 11.61 in.
+    // The picture of BLOCK is taken from 590 mm, so it ends before 11.61 in.
     const TRUTH: (i32, i32, i32, u16) = (20, -10, 1000, 17);
     for (claims, end, log) in [
         (vec![(1_162, 0, 0, 0), (0, -1_162, 0, 0), (0, 0, 9_001, 0)], error(Reason::VisionImplausible), 3),

@@ -313,7 +313,7 @@ fn nudge_inside_the_corridor_keeps_the_path() {
         (-2.5, true, DONE),
         (4.5, true, error(Reason::UnknownStart)),
     ] {
-        // To the second point of the way from HOME, which is passed within three inches.
+        // The robot moves to the second point of the way from HOME, and passes it within three inches.
         let mut bench = under_way(90);
         assert_eq!(bench.stop(), 2);
         let along = frame_of("HOME").position - bench.world.frame.position;

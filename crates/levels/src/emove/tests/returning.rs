@@ -109,7 +109,7 @@ fn part_that_may_be_clamped_is_not_moved() {
     assert_eq!(bench.clone().perform(BLOCK_TO_VISE), DONE);
     assert_eq!(bench.perform(release), DONE);
     assert_eq!(bench.motions(), [""; 0]);
-    // The joystick box has moved it.
+    // The joystick box has moved the hand.
     let mut bench = brought(BLOCK_TO_VISE);
     jog(&mut bench, [0.0, 0.3, 0.0]);
     for command in [release, BLOCK_TO_VISE, (GraspObj, "BLOCK", 1, "VISE", 1)] {
@@ -127,7 +127,7 @@ fn part_that_may_be_clamped_is_not_moved() {
     jog(&mut bench, [0.0, -0.3, 0.0]);
     assert_eq!(bench.perform(release), DONE);
     assert_eq!(bench.motions(), [""; 0]);
-    // From farther away only the joystick box leads back.
+    // From farther away, only the joystick box can move the robot back.
     let mut bench = brought(BLOCK_TO_VISE);
     jog(&mut bench, [0.0, 0.0, 3.0]);
     assert_eq!(bench.perform(BLOCK_TO_VISE), error(Reason::UnknownStart));
@@ -285,7 +285,7 @@ fn incomplete_record_allows_short_returns_only() {
         bench.stop();
         bench.wait(100);
     };
-    // Straight to a resting place nearby.
+    // The robot moves straight to a resting place nearby.
     for (by, end) in [(4.0, DONE), (11.0, DONE), (13.0, error(Reason::UnknownStart))] {
         let mut bench = Bench::ready("HOME", 1);
         miss(&mut bench, [by, 0.0, 0.0]);
@@ -293,7 +293,7 @@ fn incomplete_record_allows_short_returns_only() {
         assert_eq!(bench.perform(TO_HOME), end, "{by}");
         assert_eq!(bench.motions().len(), usize::from(end == DONE), "{by}");
     }
-    // Out of a nest against its approach, and in again.
+    // The robot leaves a nest against its approach, and enters it again.
     let nest = moved(frame_of("BENCH"), &["GRASP-MTB"]);
     let outermost = moved(nest, &["A/D-5"]);
     let up = (outermost.position - nest.position).normalize();

@@ -20,7 +20,7 @@ const OBJECTS: [Option<Object>; 4] = [
     Some(Object { size: 4.9, off_centre: 0.0 }),
 ];
 
-/// Initial openings, in; whether the gripper is attached, has no air, and reads no force.
+/// Initial openings, in, and worlds: whether the gripper is attached, has no air, and reads no force.
 const OPENINGS: [f64; 4] = [0.1, 0.625, 3.0, 5.0];
 const WORLDS: [(bool, bool, bool); 4] =
     [(true, false, false), (true, true, false), (true, false, true), (false, false, false)];

@@ -406,14 +406,14 @@ fn restarted_process_adopts_its_calibration_and_moves_nothing() {
     assert!((bench.world.force - 30.0).abs() <= 3.0);
     bench.done(GripVerb::OpenGrip, 2.0, 0);
     assert!((bench.world.opening - 2.0).abs() <= 0.02);
-    // Restarted during an opening: the fingers stop, and the same command can be sent again.
+    // After a restart during an opening, the fingers stop, and the same command can be sent again.
     bench.command(GripVerb::OpenGrip, 4.0, 0);
     bench.wait(5);
     bench.restart();
     assert_eq!((bench.step().valves.bits, bench.memory.grip.status.reason), (0, Reason::Restarted));
     bench.done(GripVerb::OpenGrip, 4.0, 0);
     assert!((bench.world.opening - 4.0).abs() <= 0.02);
-    // Restarted while its gripper is in the holster: adopted when the gripper is attached.
+    // A process restarted with its gripper in the holster adopts the calibration when the gripper is attached.
     bench.attach(false);
     bench.restart();
     assert!(!bench.wait(5).status.initialized);
@@ -424,7 +424,7 @@ fn restarted_process_adopts_its_calibration_and_moves_nothing() {
     bench.done(GripVerb::Position, 1.0, 0);
 }
 
-/// UP-INIT closes with the whole supply pressure: a held part would be crushed and dropped.
+/// UP-INIT closes with the whole supply pressure, so a held part would be crushed and dropped.
 #[test]
 fn uncalibrated_fingers_move_only_for_up_init() {
     let fails: [fn(&mut Bench); 3] = [
@@ -506,11 +506,11 @@ fn part_presence_is_reported_for_every_command() {
         assert_eq!(bench.done(GripVerb::CloseGrip, 0.10, 5).1.status.felt, felt, "{size} in");
         assert_eq!(bench.done(GripVerb::Pause, 0.0, 0).1.status.felt, felt, "after PAUSE");
     }
-    // Shut on each other with force.
+    // The fingers are shut on each other with force.
     bench.world.object = None;
     bench.world.force = 80.0;
     assert_eq!(bench.wait(20).status.felt, Felt::Nothing);
-    // A pause during a grasp: the fingers continue to close and sense the object.
+    // During a pause of a grasp, the fingers continue to close and sense the object.
     bench.done(GripVerb::OpenGrip, 3.0, 0);
     bench.world.object = Some(Object { size: 0.625, off_centre: 0.0 });
     bench.command(GripVerb::CloseGrip, 0.60, 30);
@@ -596,8 +596,8 @@ fn work(
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
-    /// From any opening, with noise of 1 or 2 counts and valves that act at once or a tick late: positions to 0.02
-    /// in, forces to 3 lb, never both directions at once, and the same bytes twice.
+    /// From any opening, with noise of 1 or 2 counts and valves that act at once or a tick late, positions are exact to
+    /// 0.02 in and forces to 3 lb. Valves never act in both directions, and two runs give the same bytes.
     #[test]
     fn servo(
         seed in any::<u64>(),
@@ -644,7 +644,7 @@ proptest! {
         }
     }
 
-    /// Random sensors and commands: no panic, and no valves in both directions.
+    /// Random sensors and commands cause no panic, and never open valves in both directions.
     #[test]
     fn nonsense(
         seed in any::<u64>(),

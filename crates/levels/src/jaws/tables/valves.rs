@@ -5,7 +5,7 @@ use rcs_core::{Actions, Plain, Variables, decision_table};
 /// The gripper on the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum AttachedGripper {
-    /// It may be that of this process: id pins without contact on a locked ring do not identify the gripper.
+    /// The gripper may be that of this process: id pins without contact on a locked ring do not identify the gripper.
     Possible,
     /// The ring is not locked, or on another gripper.
     Gone,

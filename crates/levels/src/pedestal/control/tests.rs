@@ -289,7 +289,7 @@ fn object_and_angle_are_published_for_every_command() {
     assert_eq!((status.felt, status.gripped, status.table_position), (Felt::Nothing, false, Some(-2135)));
     bench.send((PedestalVerb::Grip, 250, 50, 0));
     bench.step();
-    // A PAUSE during a GRIP: the hand finishes, and its object is published.
+    // During a PAUSE the hand finishes its GRIP, and its object is published.
     bench.send((PedestalVerb::Pause, 0, 0, 0));
     bench.step();
     bench.hand(GripReport::Done, 256).table(PedestalReport::Done);
@@ -592,7 +592,7 @@ fn object_not_released_by_the_hand_is_gripped() {
 }
 
 proptest! {
-    /// Random commands and neighbours: no panic, the hand is opened only for PRE-GRIP and RELEASE, and the same
+    /// Random commands and neighbours cause no panic. The hand is opened only for PRE-GRIP and RELEASE, and the same
     /// inputs give the same bytes.
     #[test]
     fn nonsense(

@@ -55,7 +55,7 @@ impl State {
             self.adopt(&outputs.motor, inputs.tick);
         }
         let (motor, counter) = if inputs.external.devices.field.table.is_old() {
-            // Its controller finishes a turn by itself.
+            // The table's controller finishes a turn by itself.
             self.standing = 0;
             (Motor::Settling, self.counter(sensors))
         } else {

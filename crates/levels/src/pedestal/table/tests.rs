@@ -208,7 +208,7 @@ fn failed_calibration_does_not_end_a_refused_or_missing_command() {
     }
 }
 
-/// In every tick in which the calibration can fail.
+/// A command arrives in every tick in which the calibration can fail.
 #[test]
 fn command_refused_during_a_failing_calibration_keeps_its_reason() {
     let misplaced = || Bench::new(Rotary { wrong: 500.0, ..Rotary::new(-1200) });
@@ -235,7 +235,7 @@ fn restarted_process_stops_the_table_and_adopts_its_calibration() {
     assert_eq!((bench.world.position, status.calibrated, status.position), (before, true, Some(-1000)));
     assert_eq!(bench.memory.table.motor, order, "a table at rest is not stopped");
     assert_eq!(bench.execute((TableVerb::Turn, -2135)), DONE);
-    // During a turn: the table stops, and the same command continues.
+    // After a restart during a turn, the table stops, and the same command continues the turn.
     bench.execute((TableVerb::Turn, -1500));
     let restarts = |bench: &mut Bench| {
         bench.restart();
@@ -323,8 +323,8 @@ fn calibration_continues_during_a_refusal() {
 }
 
 proptest! {
-    /// From any angle to any other, over lines of any delay: reached to 0.06 degree, and the same bytes twice. At
-    /// 25 steps per tick the whole travel takes 1360 of the 1500 ticks permitted for a turn.
+    /// The table reaches any angle from any other to 0.06 degree, over lines of any delay, and two runs give the same
+    /// bytes. At 25 steps per tick the whole travel takes 1360 of the 1500 ticks permitted for a turn.
     #[test]
     fn turns(
         start in LIMIT_MINUS..=AT_LIMIT,
@@ -347,7 +347,7 @@ proptest! {
         prop_assert_eq!(run()?, run()?);
     }
 
-    /// Random commands and sensors: no panic, and every order has its own number.
+    /// Random commands and sensors cause no panic, and every order has its own number.
     #[test]
     fn nonsense(ticks in prop::collection::vec((0_u8..30, any::<i32>(), any::<u32>()), 1..200)) {
         let mut bench = Bench::new(Rotary::new(-1200));

@@ -24,7 +24,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// The velocity is limited to [`LINK_VELOCITY`]. `None` if a count is not positive: such a move would never end.
+    /// The velocity is at most [`LINK_VELOCITY`]. `None` if a count is not positive, since the move would never end.
     #[must_use]
     pub fn from_counts(acc_fac: i32, vel_max: i32, smooth: i32) -> Option<Self> {
         if acc_fac <= 0 || vel_max <= 0 || smooth <= 0 {

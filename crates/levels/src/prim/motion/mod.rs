@@ -76,7 +76,7 @@ impl PrimMotion {
         self.current.is_none() && self.residual.is_none() && self.next.is_none() && !self.halting
     }
 
-    /// The next order may be given after a GO-THRU: no older residual is left, and the point is within brake distance.
+    /// After a GO-THRU, the next order may be given: no older residual is left, and the point is within brake distance.
     #[must_use]
     pub fn is_passing(&self) -> bool {
         let alone = self.residual.is_none() && self.next.is_none() && !self.halting;
@@ -163,7 +163,7 @@ impl PrimMotion {
         if self.halting { 0.0 } else { order.limits.velocity_at(knob) }
     }
 
-    /// If a plan is impossible from this state the old one remains: it ends at the goal, and the next tick tries again.
+    /// If no plan is possible from this state, the old one remains and ends at the goal; the next tick tries again.
     fn plan(&mut self, from: &SegmentState, knob: u16) {
         let Some(current) = &self.current else { return };
         let (order, length) = (current.order, current.length);

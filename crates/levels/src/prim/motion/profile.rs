@@ -12,7 +12,7 @@ use rcs_core::Plain;
 
 use super::limits::Limits;
 
-/// Enough: 14 in/s over 2^48 is less than a rounding error of the path.
+/// With this many, the error of 14 in/s over 2^48 is less than a rounding error of the path.
 const BISECTIONS: u32 = 48;
 /// Shorter paths are treated as no motion, inches.
 pub const NO_PATH: f64 = 1e-9;
@@ -176,7 +176,7 @@ impl Profile {
         };
         let mut state = run(self.start, &[a, b, c]);
         if self.clock > duration(&self.change) {
-            // Its rounding error would grow with the square of the cruise time.
+            // A rounding error of the acceleration would grow with the square of the cruise time.
             state.acceleration = 0.0;
         }
         run(state, &[cruise, d, e, f])

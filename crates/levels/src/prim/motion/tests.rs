@@ -137,8 +137,8 @@ impl Watch {
         let v = [Rate::between(&f[0], &f[1]), Rate::between(&f[1], &f[2]), Rate::between(&f[2], &f[3])];
         let a = [v[0].change(&v[1]), v[1].change(&v[2])];
         let j = a[0].change(&a[1]);
-        // Two simultaneous rotations: an extra acceleration of the product of their velocities, and twice that
-        // while it changes.
+        // Two simultaneous rotations have an extra acceleration, the product of their velocities, and twice that in
+        // changes.
         let product =
             if allowed.superposed { allowed.limits.velocity.powi(2) / INCHES_PER_RADIAN } else { 0.0 };
         let limits = allowed.limits;
@@ -396,7 +396,7 @@ fn stopped_robot_continues_to_its_goal() {
     motion.stand();
     assert_eq!((motion.frame(), motion.current), (here, None));
     assert!((motion.distance() - here.distance(&goal).path()).abs() < 1e-12);
-    // Moved by other means, it keeps its goal.
+    // A robot that is moved by other means keeps its goal.
     motion.put(&start);
     assert_eq!((motion.frame(), motion.goal.frame()), (start, goal));
     while !motion.is_at_rest() {
@@ -405,7 +405,7 @@ fn stopped_robot_continues_to_its_goal() {
     assert_eq!(motion.frame(), goal);
     motion.stand();
     assert!(motion.is_at_rest());
-    // At rest its only goal is its new position.
+    // At rest, the robot's only goal is its new position.
     motion.put(&start);
     assert_eq!((motion.frame(), motion.distance()), (start, 0.0));
 }

@@ -66,7 +66,7 @@ fn go_until_ramps_down_and_publishes_where_it_tripped() {
             }
             assert_eq!(rig.memory.prim.status.detected_pose, None);
         };
-        // The tick of the trip: T3I has reported the resolver frame in it.
+        // In the tick of the trip, T3I has reported the resolver frame.
         let seen = rig.pose(rig.memory.prim.status.sensor_pose).copied();
         let status = rig.memory.prim.status;
         assert_eq!(rig.pose(status.detected_pose).copied(), seen);
@@ -212,7 +212,7 @@ fn cal_sensor_stops_the_robot_and_takes_the_mean() {
     let bias = rig.process.state().calibration.bias.unwrap();
     let expected = f64::from(LOADED.z) - 2048.0 + f64::from(FORCE_COUNTS_PER_LB);
     assert!((bias[0] - expected).abs() < 1e-9, "{bias:?}");
-    // 1 lb of the bias is noise: 25 lb are reached at 26.
+    // 1 lb of the bias is noise, so the 25 lb are reached at 26.
     rig.external.devices.force = pushed(25);
     rig.guard(PrimVerb::GoUntil, 1, "PUSH-X");
     rig.wait(3);

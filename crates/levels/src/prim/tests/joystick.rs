@@ -351,7 +351,7 @@ fn recorded_pose_suspends_until_the_operator_continues() {
     rig.wait(40);
     assert!(!rig.memory.prim.status.recording, "the button was never released");
     assert_eq!(rig.pose(rig.memory.prim.status.recorded_pose).copied(), pose);
-    // The stick was deflected all the time: the motion starts from rest.
+    // The stick was deflected all the time, but the motion starts from rest.
     rig.check_path(&held.to_frame().unwrap());
     assert_ne!(rig.world.t3i.output, held);
 }
@@ -402,7 +402,7 @@ fn single_step_is_one_trajectory_point() {
         let step = a.to_frame().unwrap().distance(&b.to_frame().unwrap()).inches;
         assert!((step - 0.4).abs() < 0.02, "{step} in: the points are unchanged");
     }
-    // Released in the tick after a step: also from rest.
+    // After a release in the tick after a step, the motion also starts from rest.
     let held = rig.world.t3i.output;
     (rig.held, rig.external.devices.joystick.hold) = (false, 0);
     rig.world.t3i.path.clear();

@@ -250,9 +250,9 @@ fn lagging_robot_is_stopped_and_pause_takes_its_position() {
     };
     is_off_path(&bench);
     let stood = bench.world.line.robot.at;
-    // The limit, plus the path in the expected lag and in the ticks between Prim and the line.
+    // The robot is off by the limit, plus its path in the expected lag and in the ticks between Prim and the line.
     assert!((0.5..2.0).contains(&bench.off(&home())), "{}", bench.off(&home()));
-    // The resolvers are correct again: only ROBOT-INIT, which PAUSE sends, permits motion.
+    // The resolvers are correct again, but only ROBOT-INIT permits motion.
     assert_eq!(bench.run(PrimVerb::GotoPt, 1), PrimReport::Error);
     is_off_path(&bench);
     assert_eq!(bench.run(PrimVerb::Pause, 0), PrimReport::Error);

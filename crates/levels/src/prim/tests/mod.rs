@@ -1,4 +1,4 @@
-//! Prim against a model of T3I that stalls, fails and checks the order of points; in [`line`], against T3I itself.
+//! Tests Prim against a model of T3I that stalls, fails and checks the order of points, and in [`line`] against T3I.
 
 mod guarded;
 mod joystick;
@@ -514,7 +514,7 @@ fn robot_not_arriving_fails_after_two_seconds() {
     }
 }
 
-/// Random commands at random times: points stay in order and the path has no jump.
+/// With random commands at random times, points stay in order and the path has no jump.
 #[test]
 fn random_commands_cause_no_jump() {
     for seed in 1..=400 {

@@ -215,7 +215,7 @@ fn pedestal_and_robot_never_move_together() {
     panic!("not done");
 }
 
-/// The number of commands that E-move has received when the pedestal fails at each of its four.
+/// The number of commands that E-move has received when the pedestal fails at each of its four commands.
 const BEFORE: [(PedestalVerb, usize); 4] = [
     (PedestalVerb::PreGrip, 0),
     (PedestalVerb::Grip, 1),
@@ -281,7 +281,7 @@ fn object_lost_during_a_regrip_is_reported() {
         bench.world.emove.mishap = Some((verb, mishap));
         assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(reason));
     }
-    // While the pedestal prepares, and while it releases.
+    // The robot loses the part while the pedestal prepares, and while it releases.
     for (verb, sent) in [(PedestalVerb::PreGrip, 0), (PedestalVerb::Release, 5)] {
         let mut bench = Bench::fixing();
         bench.world.emove.received.clear();
@@ -302,7 +302,7 @@ fn regrip_without_object_grip_or_pedestal_data_is_refused() {
     let store = without(&["-pt-  PED-SAFE"]);
     let mut bench = Bench::of(store.view());
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::UnknownLocation));
-    // Held in neither the source grip nor the destination grip.
+    // The part is held in neither the source grip nor the destination grip.
     let mut bench = Bench::grasped("PART", 2);
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), error(Reason::RegripNeeded));
     bench.world.emove.hold("BAR", 1);
@@ -480,7 +480,7 @@ fn active_joystick_is_reported() {
     bench.step();
     let status = bench.step().status;
     assert_eq!((status.report, status.reason), (StatusReport::Error, Reason::JoystickOn));
-    // Also while no command is executing.
+    // The report is the same while no command is executing.
     bench.world.emove.mishap = None;
     assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE"), DONE);
     bench.world.emove.outputs.status.report = StatusReport::JoystickOn;

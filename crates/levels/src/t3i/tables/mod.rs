@@ -49,7 +49,7 @@ pub enum Dtr {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum LinkStart {
-    /// In progress or over.
+    /// The start is in progress or over.
     Over,
     /// The link was lost in this tick, or is to be restarted.
     Begun,

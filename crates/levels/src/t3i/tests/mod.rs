@@ -161,7 +161,7 @@ fn one_point_per_tick_is_sustained() {
         bench.point(&beside(0.1 * f64::from(n)));
         bench.step();
         reports.push(bench.report());
-        // Read in the tick after it was written, sent in the same tick, executed by the cell before the next.
+        // A point is read and sent in the tick after it was written, and the cell executes it before the next tick.
         assert!((bench.robot_tool().position.x - 0.1 * f64::from(n)).abs() < 0.01, "point {n}");
         assert_eq!(bench.row(), ("POINT", 8));
     }
@@ -422,7 +422,7 @@ fn unsent_bytes_are_reported_as_not_transmitted() {
 fn singly_stepped_prim_sends_one_point_per_step() {
     let mut bench = Bench::running();
     for n in 1..=6 {
-        // Its answer to the report of the previous tick; then Prim is held again.
+        // Prim answers the report of the previous tick, and is then held again.
         assert!(matches!(bench.report(), T3iReport::Ready | T3iReport::Finished));
         bench.memory.prim.header.republished = false;
         bench.point(&beside(0.4 * f64::from(n)));
@@ -485,7 +485,7 @@ fn restarted(mut bench: Bench) -> Bench {
     bench
 }
 
-/// Move the robot by some words, by other means than the line.
+/// Moves the robot by some words without the line.
 fn led(mut bench: Bench, words: i16) -> Bench {
     bench.world.line.robot.at.words[0] += words;
     bench
@@ -526,7 +526,7 @@ fn next_report_is_compared_with_the_reported_position() {
 fn displaced_robot_stays_displaced_until_the_next_point() {
     let mut bench = restarted(led(cut_off(true), 100));
     assert_eq!(check(&bench), ReportCheck::Elsewhere);
-    // Another RESTART, or another loss of the link, does not change that.
+    // Another RESTART, or another loss of the link, does not change the result.
     for connected in [true, false] {
         bench.world.line.connected = connected;
         bench.wait(5);
@@ -551,7 +551,7 @@ fn report_after_dtr_off_is_not_trusted() {
     bench.world.line.on = true;
     let bench = restarted(bench);
     assert_eq!(check(&bench), ReportCheck::Elsewhere);
-    // Before the first position it does not matter.
+    // Before the first position a controller that is off does not matter.
     let mut bench = Bench::new();
     (bench.world.line.on, bench.external.devices.link_ready) = (false, false);
     bench.step();
@@ -570,7 +570,7 @@ fn restarted_t3i_takes_the_sent_words_from_its_outputs() {
         let bench = restarted(led(bench, words));
         assert_eq!(check(&bench), expected);
     }
-    // It also keeps the result that the operator must decide.
+    // A restarted T3I also keeps the result that the operator must decide.
     let mut bench = restarted(led(cut_off(true), 100));
     bench.restart();
     bench.step();
@@ -599,7 +599,7 @@ fn restart_recovers_from_a_joint_limit() {
         (bench.report(), bench.world.line.controller.state()),
         (T3iReport::Finished, ControllerState::Running)
     );
-    // The robot's true position, not the commanded one.
+    // T3I publishes the robot's true position, not the commanded one.
     assert!(bench.world.line.robot.joints[5] <= T3.limits[5].1);
     assert_eq!(bench.memory.t3i.status.frame_feedback, WireFrame::from_frame(&bench.robot_tool()));
 }

@@ -151,7 +151,7 @@ fn pending_update_precedes_the_next_object_motion() {
         let kept = update(&bench);
         // The robot alone can move.
         assert_eq!(bench.run(SAFE), FINISHED);
-        // No object can, while the update is pending.
+        // No object can move while the update is pending.
         for line in [FROM_TRAY, TRANSFER] {
             assert_eq!(bench.run(line), error(reason));
             assert_eq!((bench.sent(), update(&bench)), (vec![], kept.clone()));
@@ -238,7 +238,7 @@ fn acquire_of_an_object_taken_elsewhere_sends_no_update() {
     const FROM_FIXTURE: &str = "ACQUIRE PART +1 PFIXTURE 0 0 -- 0 -- 0";
     const FROM_SECTOR_2: &str = "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0";
     const FROM_SECTOR_1: &str = "ACQUIRE PART +1 UNIT_1 1 0 -- 0 -- 0";
-    // Taken elsewhere by a finished command, or by an ACQUIRE of another sector. A repetition changes nothing.
+    // A finished command, or an ACQUIRE of another sector, took the part elsewhere. A repetition changes nothing.
     for first in [FROM_FIXTURE, "MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0", FROM_SECTOR_1] {
         let mut bench = Bench::connected();
         told(&mut bench, first);
@@ -252,13 +252,13 @@ fn acquire_of_an_object_taken_elsewhere_sends_no_update() {
     for mut bench in bench.interrupted(FROM_SECTOR_2, Some(PAUSE)) {
         assert!(told(&mut bench, FROM_SECTOR_2).is_empty(), "tick {}", bench.tick);
     }
-    // Taken elsewhere by an interrupted command.
+    // The part was taken elsewhere by an interrupted command.
     let mut bench = Bench::connected();
     bench.command("MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0");
     bench.until(|bench| bench.memory.subtask.status.held.object().is_some());
     assert_eq!(bench.run(PAUSE), FINISHED);
     assert!(told(&mut bench, FROM_SECTOR_2).is_empty());
-    // Taken from the source: by the same command, by a MOVE, and before the Data System was connected.
+    // The part was taken from the source by the same command, by a MOVE, or before the Data System was connected.
     for first in [FROM_SECTOR_2, FROM_TRAY] {
         let mut bench = Bench::connected();
         bench.command(first);
@@ -350,7 +350,7 @@ fn release_tool_updates_the_tool() {
             bench
         };
         assert_eq!(told(&mut bench(), &release), ["TOOL-TRNS"], "{end_at}");
-        // Replaced at any tick after the release, and repeated.
+        // The command is replaced at any tick after the release, and repeated.
         for mut bench in bench().interrupted(&release, Some(PAUSE)) {
             let mut positions = positions(&mut bench);
             positions.extend(told(&mut bench, &release));

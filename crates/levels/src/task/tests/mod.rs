@@ -374,7 +374,7 @@ fn operator_takes_the_robot_between_commands() {
     bench.world.subtask.joystick = false;
     bench.wait(5);
     assert_eq!((bench.step().status.report, bench.step().status.reason), (HwsReport::Idle, Reason::None));
-    // Before any command.
+    // The box also becomes active before any command.
     let mut bench = Bench::default();
     bench.world.subtask.joystick = true;
     bench.wait(30);

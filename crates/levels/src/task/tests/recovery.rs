@@ -96,7 +96,7 @@ fn next_command_waits_for_a_replaced_pause() {
     bench.wait(2);
     assert_eq!(bench.run(HOME), FINISHED);
     assert_eq!(bench.sent(), ["GOTO-DEST"], "one S-PAUSE is enough");
-    // By a restart.
+    // A restart interrupts the pause.
     let mut bench = Bench::default();
     bench.command(TRANSFER);
     bench.wait(2);

@@ -29,7 +29,7 @@ const PLAY: f64 = 0.15;
 const CAUGHT: f64 = 0.05;
 /// Height from which a released gripper lands, in.
 const LANDS: f64 = 0.6;
-/// From here on the lips are over the gripper's ears, and hold it down within this distance, in.
+/// Beyond this the lips are over the gripper's ears, and within the next distance they hold it down, in.
 const LIPS: f64 = 0.75;
 const HELD_DOWN: f64 = 0.15;
 const DETENT: f64 = 0.1; // in from the seat, within which the gripper is drawn to it

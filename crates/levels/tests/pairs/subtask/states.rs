@@ -62,7 +62,7 @@ impl Pair {
             emove.exchange.commander(),
             &mut [&mut below.quick_change.number, &mut self.scene.quick_change],
         );
-        // Vision answers the last request: the number of missed ones does not matter.
+        // Vision answers the last request, so the number of missed ones does not matter.
         let vision = emove.vision.commander();
         if vision.number != 0 {
             self.scene.vision.echo = if self.scene.vision.echo == vision.number { 2 } else { 1 };

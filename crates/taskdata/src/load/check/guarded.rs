@@ -27,7 +27,7 @@ fn overload(source: SensorSource) -> f64 {
     }
 }
 
-/// Increase of the reading until the robot stops, lb or in lb per in/s.
+/// Increase of the reading while the robot stops, lb or in lb, for each in/s of its speed.
 fn growth(source: SensorSource) -> f64 {
     let force = HALT * STIFFNESS;
     if source == SensorSource::My { force * LEVER } else { force }

@@ -51,7 +51,7 @@ struct Finding {
     more: Option<usize>, // further locations; `None`: does not depend on one
 }
 
-/// Findings in order of discovery. A wild card can be wrong at every sector, and is listed once.
+/// Findings in order of discovery. A wild card can be wrong at every sector, but is listed only once.
 #[derive(Debug, Default)]
 struct Findings {
     list: Vec<Finding>,

@@ -196,7 +196,8 @@ impl<'a> Reach<'a> {
                 Target::Pose(id) => {
                     self.target(&what, &frame, at, id, findings);
                 }
-                // Its reach is checked with the location points. The robot moves to it even if it is a corner.
+                // The check of the location points covers the reach. The robot moves to this point even if it is a
+                // corner.
                 Target::LocationPoint(_) => vertical(&what, &frame, at, findings),
                 Target::Stop => {}
             }

@@ -48,7 +48,7 @@ pub(super) struct Linker<'a> {
     asked: BTreeMap<(String, String), (At, usize)>,
 }
 
-/// `broken` has names in unreadable entries, `orphans` those in unloaded blocks. Last result: the unknown names.
+/// `broken` has names in unreadable entries, `orphans` those in unloaded blocks. The last result is the unknown names.
 pub(super) fn link(
     entries: &Collected,
     broken: &HashSet<String>,
@@ -153,7 +153,7 @@ impl Linker<'_> {
         }
     }
 
-    /// All names, and records that only need an object's name: forms can be in any order.
+    /// Declares all names, and records that need only an object's name, so that forms can be in any order.
     fn declare(&mut self, all: &Collected) {
         for null in all.movetables.iter().filter(|e| e.name.name.as_str() == NULL_NAME) {
             self.problems.error("name.null", null.name.at, "... is the null movetable and cannot be defined");
@@ -314,7 +314,7 @@ impl Linker<'_> {
         }
     }
 
-    /// FILE FULL (VII): no more records than the declaration allows.
+    /// Reports FILE FULL (VII) if a file has more records than its declaration allows.
     fn check_full(&mut self, all: &Collected) {
         let mut declared = FxHashMap::default();
         for entry in &all.files {

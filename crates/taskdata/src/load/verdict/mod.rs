@@ -80,7 +80,7 @@ pub struct Before {
 }
 
 impl Before {
-    /// The verdict is then independent of the robot's location and load.
+    /// Makes the verdict independent of the robot's location and load.
     #[must_use]
     pub const fn unknown() -> Self {
         Self { held: Held::Unknown, at: None }

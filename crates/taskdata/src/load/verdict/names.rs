@@ -161,7 +161,7 @@ impl Names<'_, '_> {
         }
     }
 
-    /// Contains the object if its grip is known there.
+    /// The visit contains the object if its grip is known there.
     fn visit(&mut self, named: &NamedLocation) -> Option<Visit> {
         let location = self.location(named)?;
         let [field, _, of_grip] = named.fields;

@@ -1,5 +1,5 @@
 //! The path of a command: each location must have a trajectory and an approach to the next. Paths to and from the
-//! Active Pedestal are not checked; for commands at the tool drum, only the path to the end-at location is.
+//! Active Pedestal are not checked; for commands at the tool drum, only the path to the end-at location is checked.
 
 use rcs_core::name::Name16;
 
@@ -63,7 +63,7 @@ impl Route<'_, '_> {
                 }
             }
             "ACQUIRE" => self.go(source),
-            // To an object at its location, or to a location (SPECNOTES.md, contradiction 24).
+            // POSITION moves to an object at its location, or to a location (SPECNOTES.md, contradiction 24).
             "POSITION" => self.go(source.or(destination)),
             "RELEASE-TOOL" | "REMOVE-TOOL" => {
                 self.last = self.at_the_drum();
@@ -74,7 +74,7 @@ impl Route<'_, '_> {
         }
     }
 
-    /// Where tool commands end (V.2.1); `None`, if missing, is reported with the relative moves there.
+    /// Where tool commands end (V.2.1). A missing place, `None`, is reported with the relative moves there.
     fn at_the_drum(&self) -> Option<Standing> {
         let location = self.data.resolve_location::<16, 16>(&Name16::clipped(DRUM), None, None).ok()?;
         Some(Standing { location, object: None })
@@ -139,7 +139,7 @@ impl Route<'_, '_> {
     }
 }
 
-/// Such as sectors of one tray: no trajectory is needed between them (docs/design/motion.md "Same location").
+/// Sectors of one tray, for example, need no trajectory between them (docs/design/motion.md "Same location").
 fn same(one: &Location, other: &Location) -> bool {
     one.name == other.name
 }
