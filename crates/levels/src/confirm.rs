@@ -365,7 +365,7 @@ mod tests {
         {
             let process = Ladder::processes().iter().find(|process| process.name == name).unwrap();
             let mut rows = 0;
-            // PAUSE sends no commands: its goal is the process's own state.
+            // PAUSE sends no commands, so its goal is the process's own state.
             for table in process.tables.iter().filter(|table| !table.name.ends_with("PAUSE")) {
                 for row in table.rows {
                     let finished = name == "T3 Interface" && row.argument == Some("Finished");

@@ -166,7 +166,7 @@ impl Execution {
         (arrival, if is_asked { Asked::Now } else { Asked::Before })
     }
 
-    /// The process was dormant in the previous tick: the next command number is adopted, not executed.
+    /// Call if the process was dormant in the previous tick. The next command number is adopted, not executed.
     pub fn wake(&mut self) {
         self.receiver = Receiver::default();
     }

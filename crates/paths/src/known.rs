@@ -133,7 +133,7 @@ impl Known {
     }
 }
 
-/// Locks even after a panic in another thread: entries are always complete.
+/// Locks even after a panic in another thread, because entries are always complete.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

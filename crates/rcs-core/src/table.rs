@@ -238,7 +238,7 @@ pub struct ActionText {
 
 /// The state variables of a table.
 pub trait Variables {
-    /// All values as digits of one number, the last variable lowest: equal numbers are equal situations.
+    /// All values as digits of one number, the last variable lowest. Equal numbers mean equal situations.
     fn code(&self) -> u64;
 }
 

@@ -244,7 +244,7 @@ impl HeldObject {
         let Some(held) = self.held else { return };
         let letting_go = self.is_releasing(at.is_some());
         let gripper = EmoveGripper::of(held.gripper);
-        // A part held with little force hardly moves the fingers when it falls: only the force shows the loss.
+        // A part held with little force hardly moves the fingers when it falls, so only the force shows the loss.
         let felt = letting_go || !gripper.senses_nothing(memory);
         self.unfelt = if felt { 0 } else { self.unfelt.saturating_add(1) };
         // A restarted gripper has no opening yet, which does not prove a loss.

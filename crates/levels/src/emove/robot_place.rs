@@ -77,7 +77,7 @@ pub fn present_frame(memory: &CommonMemory) -> Option<Frame> {
     memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()
 }
 
-/// An uncontrolled robot this near may push an object: the reach of the fingers and a held part (ASSUMED).
+/// An uncontrolled robot this near may push an object with its fingers or a held part (ASSUMED).
 const PUSHED_INCHES: f64 = 6.0;
 
 /// True if the object is near, or the resolvers give no position.

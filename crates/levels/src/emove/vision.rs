@@ -276,7 +276,7 @@ impl EmoveVision {
         }
     }
 
-    /// The next view: over the centroid; for [`Action::Align`] also turned with the part, whose place is then known.
+    /// The next view, over the centroid. For [`Action::Align`] it also turns with the part, whose place is then known.
     pub(super) fn next_view(
         &mut self,
         action: Action,

@@ -138,7 +138,7 @@ impl State {
         match t3i.status.report {
             T3iReport::Error => fault(&t3i.status),
             _ if self.motion.is_some() && !t3i.status.link_running => silence(&t3i.status),
-            // A held T3I reads no commands: a new one would be lost.
+            // A held T3I reads no commands, so a new one would be lost.
             _ if t3i.header.republished => Interface::Busy,
             T3iReport::Executing => Interface::Busy,
             T3iReport::Finished if echo == number => Interface::Finished,

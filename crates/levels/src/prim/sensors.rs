@@ -54,7 +54,7 @@ impl GuardReading {
 }
 
 /// Counts from the middle as tool Fx, Fy, Fz, My: tool X, Y, Z are sensor Z, -Y, X (III.3.8). `None` if the sensor has
-/// no power, or an axis is overloaded: then the other axes are not valid either.
+/// no power, or an axis is overloaded, since then the other axes are not valid either.
 fn tool_axes(force: &ForceSensor) -> Option<[f64; FORCE_AXES]> {
     let sound = |counts: u16| (1..ADC_FULL_SCALE).contains(&counts);
     if !force.valid || ![force.x, force.y, force.z, force.moment].into_iter().all(sound) {

@@ -65,7 +65,7 @@ impl DataSystem {
         }
     }
 
-    /// Called first in each tick: an accepted update leaves the queue.
+    /// Call first in each tick. An accepted update leaves the queue.
     pub fn observe(&mut self, status: &DataBaseStatus, tick: Tick) {
         let [first, _] = self.updates.pending;
         let is_first_sent = first

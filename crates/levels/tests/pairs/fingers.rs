@@ -12,13 +12,13 @@ pub enum Fingers {
     Open,
     /// Narrower by 0.3 in.
     Drifted,
-    /// One of them touches the part.
+    /// One finger touches the part.
     Touching,
-    /// They hold the part with the commanded force.
+    /// The fingers hold the part with the commanded force.
     Holding,
-    /// They are as wide, and the part is gone.
+    /// The fingers are as wide, and the part is gone.
     Emptied,
-    /// They are below the grasp size, and empty.
+    /// The fingers are below the grasp size, and empty.
     Passed,
 }
 

@@ -303,7 +303,7 @@ pub fn approach_key<const N: usize>(
     Some(Key { rest: (from << 48) | key.rest, ..key })
 }
 
-/// The key of an approach or depart at a location itself: it contains no name.
+/// The key of an approach or depart at a location itself, which contains no name.
 #[must_use]
 pub fn plain_key(direction: Direction, at: Reference) -> Key {
     Key { main: [0; 2], rest: (u64::from(direction.code()) << 56) | reference_bits(at) }

@@ -281,7 +281,7 @@ impl<'a> TaskData<'a> {
     /// The owners of the location point, of its pose, or of a static array.
     pub(super) fn owners(&self, place: &Place) -> impl Iterator<Item = Reference> + Clone + use<'a> {
         let (data, place) = (*self, *place);
-        // Owners of an array on a tray are omitted: they include other trays with the same division.
+        // Owners of an array on a tray are omitted, because they include other trays with the same division.
         let array = if place.locpt.is_null() { place.array } else { ArrayId::NULL };
         // The location point's record is read only if the other owners have no entry.
         (0..3)

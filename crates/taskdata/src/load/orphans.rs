@@ -27,7 +27,7 @@ pub(super) struct Orphans {
     pub(super) missing: Vec<LoadLine>, // name a missing block
     pub(super) again: Vec<LoadLine>, // name an already loaded block
     pub(super) directories: BTreeMap<BlockNumber, Vec<BlockNumber>>, // with the blocks that they name
-    /// An unreadable file may contain any name and block: an unknown name is reported only if it is probably misspelt.
+    /// An unreadable file may contain any name and block, so only names that are probably misspelt are reported.
     pub(super) incomplete: bool,
 }
 

@@ -81,7 +81,7 @@ fn settings_of<const N: usize>(
     let value_of = |name: &str| settings.iter().find(|(v, _)| v.text == name).map(|(_, value)| *value);
     let missing: Vec<&str> = known().filter(|k| value_of(k).is_none()).collect();
     let Some(object) = value_of(name_variable).filter(|_| missing.is_empty()) else {
-        // If one variable is misspelt or set twice, another is missing: only one error is reported.
+        // If one variable is misspelt or set twice, another is missing, so only one error is reported.
         if !misspelt {
             p.flaw("show.missing", file.at, format!("{} needs {}", file.text, missing.join(", ")), None);
         }

@@ -70,7 +70,7 @@ impl EmoveMotion {
         self.commander.status_of(inputs.tick, &inputs.memory.prim)
     }
 
-    /// The status of the robot: after a through point it moves to the next one.
+    /// The status of the robot. At a through point it is executing, because it moves to the next point.
     pub(super) fn robot(&self, inputs: &EmoveInputs<'_>) -> Lower {
         match self.status(inputs) {
             Lower::Done if inputs.memory.emove.prim.command == PrimVerb::GoThru => Lower::Executing,

@@ -306,7 +306,7 @@ pub enum VisionAnswer {
 pub enum Sight {
     /// Vision sees the object.
     Seen,
-    /// It sees nothing.
+    /// Vision sees nothing.
     Missing,
     /// Vision sees another object.
     Unrecognised,

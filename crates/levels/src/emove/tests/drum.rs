@@ -297,7 +297,7 @@ fn gripper_failure_ends_the_tool_command() {
         assert_eq!(run(&mut bench, verb), error(Reason::ReleaseNotEnded), "{verb}");
     }
     assert!(bench.log().iter().all(|word| *word == "PAUSE"), "{:?}", bench.log());
-    // It is grasped again.
+    // The tool is grasped again.
     bench.world.tool_grip.opening = SIZE + 50;
     bench.world.log.clear();
     assert_eq!(run(&mut bench, AcquireTool), DONE);

@@ -555,7 +555,7 @@ fn unknown_contents_are_treated_as_held() {
         assert_eq!(bench.run(Release, "BLOCK", 1, "HOME", 1), DONE);
         assert_eq!(bench.log(), ["OPEN-GRIP"]);
     }
-    // It opens, even if the object is wider than the depart size of the command's object.
+    // The gripper opens, even if the object is wider than the depart size of the command's object.
     for (size, opened) in [(75, 350), (345, 395), (480, 500)] {
         let mut bench = Bench::with_unknown("HOME", size);
         assert_eq!(bench.run(Release, "BLOCK", 1, "HOME", 1), DONE);

@@ -357,7 +357,7 @@ fn vision_locates_an_object() {
     assert!((distance.inches - 0.2_f64.hypot(0.1) * 2.0).abs() < 0.03, "{} in", distance.inches);
     assert!((distance.radians.to_degrees() - 10.0).abs() < 0.1, "{} rad", distance.radians);
     assert_eq!(bench.run(MovToVu, "SHAFT", 1, "BENCH", 0), error(Reason::BadRecord));
-    // An interrupted grasp has ended since: the robot must not drag the part to the place of the picture.
+    // An interrupted grasp has ended since, so the robot must not drag the part to the place of the picture.
     bench.hold("BLOCK", 75, 1);
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), error(Reason::AlreadyHolding));
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::AlreadyHolding));

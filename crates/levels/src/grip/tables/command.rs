@@ -10,7 +10,7 @@ use crate::execution::Course;
 pub enum Acceptance {
     /// The command is accepted.
     Accepted,
-    /// It is refused.
+    /// The command is refused.
     Refused,
 }
 
@@ -34,9 +34,9 @@ pub enum GripBeginning {
 /// The calibration in the output buffers, from before a restart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Written {
-    /// It is present.
+    /// The calibration is present.
     Calibration,
-    /// It is missing.
+    /// The calibration is missing.
     Nothing,
 }
 
@@ -52,9 +52,9 @@ pub enum StartBuffer {
 /// Use of the calibration in the output buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Adoption {
-    /// It stays as it is.
+    /// The calibration stays as it is.
     Keep,
-    /// It is adopted when the sensors agree.
+    /// The calibration is adopted when the sensors agree.
     Adopt,
 }
 

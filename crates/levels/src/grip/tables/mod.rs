@@ -33,12 +33,12 @@ pub enum Step {
 /// Step of UP-INIT: progress of the calibration. It outlasts the commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripPhase {
-    /// Not calibrated: begins at once, since the gripper is attached when the system starts (VI.3.1).
+    /// Not calibrated: the calibration begins at once, since the gripper is attached when the system starts (VI.3.1).
     Missing,
-    /// Not calibrated, or interrupted: waits for UP-INIT. This is the first phase if the gripper was still in its
-    /// holster, or if the process was started in the middle of a job: a part may be held.
+    /// Not calibrated, or interrupted: the calibration waits for UP-INIT. This is the first phase if the gripper was
+    /// still in its holster, or if the process was started in the middle of a job: a part may be held.
     Deferred,
-    /// Calibrated before the process was restarted: adopted when the sensors of the gripper agree.
+    /// The calibration from before a restart is adopted when the sensors of the gripper agree.
     Adopting,
     /// The fingers close, until the readings are steady.
     Closing,
@@ -109,18 +109,18 @@ pub enum Sensors {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripMotion {
-    /// They move, or have just come to rest.
+    /// The fingers move, or have just come to rest.
     Moving,
-    /// They are at rest.
+    /// The fingers are at rest.
     Still,
 }
 
 /// Whether the readings have settled since the valves went off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripRest {
-    /// They have not settled yet.
+    /// The readings have not settled yet.
     Waiting,
-    /// They have settled.
+    /// The readings have settled.
     Rested,
 }
 
@@ -154,7 +154,7 @@ pub enum Grasp {
     Missed,
     /// One finger touches.
     OneFinger,
-    /// Both touch, force much too low: a medium flow cannot overshoot.
+    /// Both fingers touch with much too little force: a medium flow cannot overshoot.
     Loose,
     /// Force a little too low.
     Weak,

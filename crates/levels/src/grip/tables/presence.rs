@@ -27,9 +27,9 @@ pub enum ClosedEnd {
 /// The potentiometer, compared with the previous tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Stillness {
-    /// It reads the same within its noise.
+    /// The reading is the same within its noise.
     Still,
-    /// It has changed, or there was no reading before.
+    /// The reading has changed, or there was none before.
     Changed,
 }
 
@@ -54,9 +54,9 @@ pub enum Period {
 /// Update of the count of ticks with the same contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Count {
-    /// It continues.
+    /// The count continues.
     Continue,
-    /// It starts again.
+    /// The count starts again.
     Restart,
 }
 

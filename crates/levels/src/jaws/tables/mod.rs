@@ -32,7 +32,7 @@ pub enum Step {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum JawsMotion {
-    /// They move, may not have started to, or do not press yet on the object.
+    /// The fingers move, may not have started to, or do not press yet on the object.
     Moving,
     /// The fingers are at rest.
     Stopped,

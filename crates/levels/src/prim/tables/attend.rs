@@ -5,15 +5,15 @@ use rcs_core::{Actions, Plain, decision_table};
 /// What happens with the tables of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Attention {
-    /// They are not consulted.
+    /// The tables are not consulted.
     Leave,
-    /// They are not consulted; a motion ramps down.
+    /// The tables are not consulted; a motion ramps down.
     Halt,
-    /// They are consulted, from the first step.
+    /// The tables are consulted, from the first step.
     Begin,
-    /// They are consulted.
+    /// The tables are consulted.
     Continue,
-    /// They are consulted again, and the report of the command is withdrawn.
+    /// The tables are consulted again, and the report of the command is withdrawn.
     Resume,
 }
 

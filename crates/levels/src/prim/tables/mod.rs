@@ -29,13 +29,13 @@ use crate::{
 /// The answer of T3I to the last command (VI.1.2 status-report, status-arg-out).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Interface {
-    /// It has enough points, has not echoed the command yet, or is held.
+    /// T3I has enough points, has not echoed the command yet, or is held.
     Busy,
-    /// It is ready for a new point.
+    /// T3I is ready for a new point.
     Ready,
-    /// It has finished all points.
+    /// T3I has finished all points.
     Finished,
-    /// It does not answer.
+    /// T3I does not answer.
     Silent,
     /// The robot controller's DTR is off.
     LinkOff,
@@ -45,14 +45,14 @@ pub enum Interface {
     LinkError,
     /// The robot has left its path, and T3I has stopped it.
     OffPath,
-    /// It refused a command.
+    /// T3I refused a command.
     Refused,
 }
 
 /// The commanded motion of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Posture {
-    /// None: its position was never taken over, or is lost.
+    /// None: the robot's position was never taken over, or is lost.
     Unpositioned,
     /// The path is being sent.
     Moving,
@@ -83,7 +83,7 @@ pub enum Restarts {
 /// The path to the goal of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PrimPath {
-    /// It is being followed, or has ended.
+    /// The path is being followed, or has ended.
     Kept,
     /// The link was restarted: the robot rests, and the path starts again.
     Lost,
@@ -101,9 +101,9 @@ pub enum PrimOperator {
 /// The DEPC link after a RESTART.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum PrimLink {
-    /// It does not run yet.
+    /// The link does not run yet.
     Down,
-    /// It runs, and T3I feeds back a frame.
+    /// The link runs, and T3I feeds back a frame.
     Running,
 }
 
@@ -176,9 +176,9 @@ pub enum CommandKind {
 /// PAUSE to T3I after a start of Prim, since the buffer may hold a command from before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum FirstPause {
-    /// Prim has not sent it yet.
+    /// Prim has not sent the PAUSE yet.
     Due,
-    /// It is sent.
+    /// The PAUSE is sent.
     Sent,
 }
 

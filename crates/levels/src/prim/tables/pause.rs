@@ -19,7 +19,7 @@ decision_table! {
             8:  posture: Unpositioned,            switches: One              => Yield   -> Start;
             9:  posture: Standing,                switches: One              => Drive   -> Driving;
         }
-        /// Start: no motion to stop, or not yet done.
+        /// No motion has to stop, or the command is not done yet.
         Start {}
         /// The motion of the previous command ramps down.
         Stopping {}

@@ -5,9 +5,9 @@ use rcs_core::{Actions, Plain, decision_table};
 /// What happens to the record of the recorded pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Recording {
-    /// It stays as it is.
+    /// The record stays as it is.
     Keep,
-    /// It takes the commanded pose; Prim and E-move are suspended until the operator continues.
+    /// The record takes the commanded pose; Prim and E-move are suspended until the operator continues.
     Record,
 }
 

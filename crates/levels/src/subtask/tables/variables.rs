@@ -7,7 +7,7 @@ pub enum GripHeld {
     Source,
     /// The grip for the destination location, which may be the same.
     Destination,
-    /// Neither of the two, or the object is not held.
+    /// Neither of the two grips, or the object is not held.
     Neither,
 }
 
@@ -150,9 +150,9 @@ pub enum SubtaskRobot {
 /// Whether the robot may leave while the pedestal holds a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Leaving {
-    /// It must stay: it holds something, or is not clear of the pedestal.
+    /// The robot must stay: it holds something, or is not clear of the pedestal.
     Bound,
-    /// It may leave: it holds nothing and is clear.
+    /// The robot may leave: it holds nothing and is clear.
     Empty,
 }
 

@@ -5,7 +5,7 @@ use rcs_core::{Actions, Plain, decision_table};
 /// What happens to the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Supervision {
-    /// It continues.
+    /// The motion continues.
     Continue,
     /// The queue is emptied, nothing more is sent, and the controller stops the robot.
     Stop,

@@ -18,7 +18,7 @@ use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 /// The check of a new POINT.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Point {
-    /// It is the next in order, and the line can carry its frame.
+    /// The point is the next in order, and the line can carry its frame.
     Next,
     /// A number is missing: the path would have a jump.
     Gap,
@@ -41,7 +41,7 @@ pub enum T3iLink {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Dtr {
-    /// It is on, or this end of the line has stopped in the middle of a frame and does not check it.
+    /// DTR is on, or is not checked because this end of the line has stopped in the middle of a frame.
     On,
     /// The controller does not run its DEPC function, or is not connected.
     Off,
@@ -131,7 +131,7 @@ pub enum Trouble {
 /// The state of the line in this tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum T3iLine {
-    /// No position is known: only a restart can be sent.
+    /// No position is known, so only a restart can be sent.
     Down,
     /// A frame is outstanding.
     Busy,
@@ -161,9 +161,9 @@ pub enum PointQueue {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum NextPosition {
-    /// It can be expressed in words on the line.
+    /// The position can be expressed in words on the line.
     Sendable,
-    /// It cannot be expressed in words, or no position is to be sent.
+    /// The position cannot be expressed in words, or none is to be sent.
     Unsendable,
 }
 

@@ -5,9 +5,9 @@ use rcs_core::{Actions, Plain, decision_table};
 /// Update of the words with which a report is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Comparison {
-    /// They stay those of the last point and the one before.
+    /// The words stay those of the last point and the one before.
     Keep,
-    /// They become those of the repeated position.
+    /// The words become those of the repeated position.
     TakeRepeated,
 }
 

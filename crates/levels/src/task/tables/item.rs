@@ -107,11 +107,11 @@ pub enum Taker {
 /// The current or new command, compared with the one in the ledger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Continuation {
-    /// It leaves the ledger unchanged, or is the command in it.
+    /// The command leaves the ledger unchanged, or is the command in it.
     Same,
-    /// It is new, and replaces the one in the ledger.
+    /// The command is new, and replaces the one in the ledger.
     Another,
-    /// It is a POSITION, which takes nothing.
+    /// The command is a POSITION, which takes nothing.
     Position,
 }
 

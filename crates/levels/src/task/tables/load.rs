@@ -40,13 +40,14 @@ pub enum Carry {
     Keep,
     /// The object is no longer carried.
     Drop,
-    /// It is carried, with the place and the serial number of the command.
+    /// The object is carried, with the place and the serial number of the command.
     Note,
-    /// It is carried, with the place and the serial number of the command. An update follows wherever it is released.
+    /// The object is carried, with place and serial number of the command. An update follows wherever it is released.
     Follow,
-    /// It is at the place of the command. It keeps its serial number, and an update follows wherever it is released.
+    /// The object is at the place of the command and keeps its serial number. An update follows wherever it is
+    /// released.
     KeepSerial,
-    /// It is carried with the serial number of the command, and keeps its place.
+    /// The object is carried with the serial number of the command, and keeps its place.
     KeepPlace,
 }
 

@@ -14,15 +14,15 @@ pub enum Ends {
 /// State of the database (V.4.1): the result of the last command to the Data System.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum DataBase {
-    /// It is done.
+    /// The command is done.
     Done,
-    /// It is executing, or not answered yet.
+    /// The command is executing, or not answered yet.
     Executing,
-    /// It was refused.
+    /// The command was refused.
     Refused,
-    /// It is overdue, and can be written again.
+    /// The command is overdue, and can be written again.
     Overdue,
-    /// It is overdue after all retries.
+    /// The command is overdue after all retries.
     Silent,
 }
 
@@ -40,13 +40,13 @@ pub enum Update {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskTool {
-    /// It is not attached, or it holds another tool than the command names.
+    /// The tool gripper is not attached, or holds another tool than the command names.
     None,
-    /// It holds nothing.
+    /// The tool gripper holds nothing.
     Free,
-    /// It holds the tool.
+    /// The tool gripper holds the tool.
     Held,
-    /// It holds something unknown, or its sensors give no result.
+    /// The tool gripper holds something unknown, or its sensors give no result.
     Unsure,
 }
 

@@ -316,7 +316,7 @@ fn repeated_position_updates_the_object_it_released() {
     }
 }
 
-/// The command is not repeated: the next command about another object, or a STARTUP, sends the update first.
+/// The command is not repeated, so the next command about another object, or a STARTUP, sends the update first.
 #[test]
 fn next_command_updates_an_object_released_before() {
     for line in [LET_GO, LET_GO_WITHOUT_NAME, TO_FIXTURE] {

@@ -314,7 +314,7 @@ impl<'a> Reach<'a> {
                 Direction::Approach => ("approach", data.approach_location(&location.place)),
                 Direction::Depart => ("depart", data.depart_location(&location.place)),
             };
-            // The approach to an unreachable corner is not checked: it is not a target.
+            // The approach to an unreachable corner is not checked, because it is not a target.
             if path == Some(record.path) && fault(&location.frame).is_none() {
                 let what = || format!("{word} of {}", shown(&location));
                 self.follow(record.path, &location.frame, &what, true, findings);

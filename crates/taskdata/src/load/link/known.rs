@@ -22,7 +22,7 @@ pub(super) fn named<const N: usize>(index: &OwnedIndex, name: &Named<N>) -> Opti
     index.view().find(name_key(&name.name))
 }
 
-/// Compares bytes: faster for many names.
+/// Compares bytes, which is faster for many names.
 fn is_null(name: &Named<10>) -> bool {
     name.name.bytes().strip_prefix(NULL_NAME.as_bytes()).is_some_and(|rest| rest.starts_with(&[0]))
 }

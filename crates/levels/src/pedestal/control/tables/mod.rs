@@ -80,9 +80,9 @@ pub enum PedestalCalibration {
 /// Whether the hand was commanded to grip, and not to open afterwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Gripped {
-    /// It was not: it holds no object of a command.
+    /// The hand holds no object of a command.
     No,
-    /// It was: it may hold the object.
+    /// The hand may hold the object of a command.
     Yes,
 }
 

@@ -25,7 +25,7 @@ pub enum Step {
 /// Step of CALIBRATE: progress of the calibration. It outlasts the commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TablePhase {
-    /// Not calibrated: begins at once, since the system has just started (IV.5.1 step 10).
+    /// Not calibrated: the calibration begins at once, since the system has just started (IV.5.1 step 10).
     Missing,
     /// Not calibrated since the process was started in the middle of a job: the table may be next to the robot, so
     /// the calibration waits for a command that turns it.
@@ -87,7 +87,7 @@ impl TableActivity {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Motor {
-    /// Its controller has not taken the last order yet.
+    /// The motor's controller has not taken the last order yet.
     Pending,
     /// The motor turns.
     Turning,
@@ -95,16 +95,16 @@ pub enum Motor {
     Settling,
     /// The motor is at rest.
     Standing,
-    /// Its controller does not take the last order in time.
+    /// The motor's controller does not take the last order in time.
     Silent,
 }
 
 /// Whether counter and potentiometer agree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Counter {
-    /// They agree.
+    /// Counter and potentiometer agree.
     Agrees,
-    /// They differ: steps were lost, the counter was never set, or the potentiometer fails.
+    /// Counter and potentiometer differ: steps were lost, the counter was never set, or the potentiometer fails.
     Disagrees,
 }
 
