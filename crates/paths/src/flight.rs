@@ -148,7 +148,7 @@ impl Robot {
     }
 }
 
-/// The joint farthest beyond a limit, from 0, and degrees beyond it.
+/// The joint (index from 0) that is farthest beyond a limit, and the degrees beyond it.
 fn beyond(plate: &Plate, near: &Joints) -> Option<(usize, f64)> {
     let joints = T3.inverse(&plate.to_tool(&T3), near).ok()?;
     let margin = T3.margin(&joints);

@@ -12,7 +12,7 @@ use plant::{
 use serde::Serialize;
 
 pub const MARGIN: f64 = 2.0;
-/// Inches. A greater distance skips more ticks, but makes each check slower.
+/// Range of the clearance check, inches. A greater one skips more ticks, but makes each check slower.
 pub(crate) const SIGHT: f64 = 4.0;
 const FREE: f64 = 0.05; // in: ends a permitted contact
 /// Additional depth (in, ASSUMED) for a part in nest or vise, because vision determines its place in the fingers.

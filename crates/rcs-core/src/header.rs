@@ -2,7 +2,7 @@
 
 use crate::{Plain, name::Name16, table::Values, tick::Tick};
 
-/// Maximum number of tables that a process consults in addition to the one that decides: those of Prim.
+/// A process consults at most this many tables in addition to the one that decides, as Prim does.
 pub const BESIDE: usize = 3;
 
 /// The first part of every set of output buffers.

@@ -101,7 +101,7 @@ fn clevis_blank_is_released_before_its_seat() {
     let place = grip(&data, "LCLEVIS_BH", 2, "PFIXTURE", 0);
     let vise = at(&data, "PFIXTURE", 0, "LCLEVIS_BH").frame;
     let [x, y, z] = clevis_seat(CLEVIS[0]);
-    // 0.04 before the back, 0.05 above the ledge, in the middle of the partly closed jaws.
+    // The blank is 0.04 before the back, 0.05 above the ledge, in the middle of the partly closed jaws.
     assert_at(&seen_from(&vise, &carried(&blank, &pick, &place)), [x - 0.04, y + 0.04, z + 0.05], true);
     // The seat position is 0.01 beyond the front face of a seated blank.
     let seat = seen_from(&vise, &grip(&data, "S-LCLEVIS_BH", 1, "PFIXTURE", 0));
@@ -122,7 +122,7 @@ fn half_done_clevis_returns_turned_around() {
         &grip(&data, "LCLEVIS_IH", 1, "PFIXTURE", 0),
         &grip(&data, "LCLEVIS_IH", 1, "PEDESTAL", 0),
     );
-    // On the axis of the table; the pedestal's hand grips the lowest inch.
+    // The part is on the axis of the table; the pedestal's hand grips the lowest inch.
     assert_at(&seen_from(&pedestal, &brought), [0.0, 0.0, 1.0], true);
     let half_turn = Frame {
         position: Vector::zeros(),
@@ -160,7 +160,7 @@ fn turned_part_is_upright_in_its_nest_and_flat_in_its_cradle() {
     let data = store.view();
     for sector in [7, 8] {
         let cradle = at(&data, "UNIT_2", sector, "SHAFT_BH").frame;
-        // 1.17 in below the rim (Figure VIII.11), along world Y.
+        // The cradle is 1.17 in below the rim (Figure VIII.11), along world Y.
         assert!((cradle.position.z - -15.17).abs() < 1e-9 && (cradle.z() + Vector::y()).norm() < 1e-9);
         let nest = at(&data, "V-VFIXTURE", 0, "SHAFT_BH").frame;
         let brought = carried(
@@ -206,7 +206,7 @@ fn every_gripper_has_its_holster() {
         let gripper = format!("GRIPPER-{number}");
         assert_eq!(data.obj_grips(&name(&gripper)).unwrap().endeff_id, number);
         let rest = at(&data, holster, 0, &gripper).frame;
-        // 3 in above the holster with the gripper; without it, above the seat.
+        // The robot is 3 in above the holster with the gripper; without it, above the seat.
         assert_at(&seen_from(&rest, &grip(&data, &gripper, 1, holster, 0)), [-3.0, 0.0, 0.0], true);
         assert_at(&seen_from(&rest, &grip(&data, &gripper, 2, holster, 0)), [-3.0, 0.0, 1.5], true);
     }

@@ -459,7 +459,7 @@ fn restarted_process_adopts_the_command_and_stops_the_table() {
     bench.send((PedestalVerb::Flip, 0, 0, 100));
     bench.step();
     assert_eq!(bench.table(PedestalReport::Done).end(), DONE, "with any object in the hand");
-    // While the table comes to rest after a PAUSE.
+    // A restart while the table comes to rest after a PAUSE keeps that PAUSE.
     bench.send((PedestalVerb::Flip, 0, 0, 100));
     bench.step();
     bench.table(PedestalReport::Executing).send((PedestalVerb::Pause, 0, 0, 0));
