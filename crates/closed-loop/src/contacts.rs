@@ -38,7 +38,7 @@ impl From<&CommonMemory> for Commands {
 }
 
 impl Commands {
-    /// After another tick. A command that E-move has not accepted yet, or that has failed, moves nothing.
+    /// The commands after another tick. A command that E-move has not accepted yet, or that has failed, moves nothing.
     fn after(self, memory: &CommonMemory) -> Self {
         let (told, status) = (&memory.subtask.emove, &memory.emove.status);
         let taken = status.echo == told.number && status.report != StatusReport::Error;
@@ -190,7 +190,7 @@ impl ContactCheck {
         self.least().max(FREE)
     }
 
-    /// A smaller distance is the new nearest miss, in.
+    /// The distance, in, below which a pair is the new nearest miss.
     fn least(&self) -> f64 {
         self.nearest.as_ref().map_or(self.farthest, |nearest| nearest.distance_in)
     }

@@ -81,7 +81,7 @@ impl<L> Course<L> {
     }
 
     /// Run the next tick on its external inputs, and call `observe` after each stage. The caller must then call
-    /// [`summarise`](Self::sum_up).
+    /// [`summarise`](Self::summarise).
     ///
     /// # Errors
     /// Errors of the levels. The tick is then void, and common memory is that of the previous tick.

@@ -1,5 +1,5 @@
-//! Lines of a job by the devices of the workstation, where a mapping has them; and the simulated devices behind the
-//! emulated couplers.
+//! Lines of a job that devices of the workstation execute, if the mapping has them, and the simulated devices behind
+//! the emulated couplers.
 //!
 //! ```text
 //!   `** vise close PFIXTURE` ──► field::Lines ──outputs──► couplers ──► plant's Devices ──► vise of the cell
@@ -16,7 +16,7 @@ use plant::{
 };
 use taskdata::load::job::{Drum, Workstation as Action};
 
-/// Omits the place of a part in a tray, which is vision's affair. `None` if no device executes the line.
+/// Omits the place of a part in a tray, which vision determines. `None` if no device executes the line.
 #[must_use]
 pub fn device_line(action: &Action) -> Option<String> {
     Some(match action {

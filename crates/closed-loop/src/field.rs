@@ -34,7 +34,7 @@ pub use self::{
 const SET_UP_MS: u64 = 2000; // simulated time before the first tick, for the set-up of the devices, ms
 const EXCHANGES_MS: [u64; 2] = [1, TICK_MS - 8]; // times of the two exchanges after a slot, ms
 const TIMEOUT_MS: u16 = 6; // answer timeout, ms; also the duration of an exchange over a cut connection
-/// Times at which the outputs of the end are written and read back: longer than the time limit of a session.
+/// Time between two exchanges at the end of a run. All [`ENDING_STEPS`] take longer than the session's time limit.
 const ENDING_STEP_MS: usize = 20;
 const ENDING_STEPS: usize = 12;
 
@@ -80,7 +80,7 @@ pub struct SimulatedField {
     now: u64,
     /// Vise, machines, drum and trays behind the couplers.
     devices: Option<Box<Devices>>,
-    /// What arrives at these devices, and what their sensors show: a value for each output and input of the mapping.
+    /// The values of the mapping's outputs that arrive at these devices, and those of its inputs from their sensors.
     arrived: Vec<i64>,
     sensed: Vec<i64>,
 }
@@ -173,8 +173,8 @@ impl SimulatedField {
         arrived
     }
 
-    /// End: each device gets the outputs of the end and reads them back, or does not answer. `inputs` are the last
-    /// ones of the controller.
+    /// Ends the couplers: each device gets the outputs of the end, which are then read back, or it does not answer.
+    /// `inputs` are the last ones of the controller.
     pub fn end(&mut self, inputs: &DeviceInputs) {
         self.desk.end();
         for time in (self.now / MS + 1..).step_by(ENDING_STEP_MS).take(ENDING_STEPS) {

@@ -139,7 +139,7 @@ impl<L> ClosedLoop<L> {
         desk.into_iter().flat_map(Desk::orders)
     }
 
-    /// `now` in ns. The reports determine the inputs of the tick. Does not allocate.
+    /// The reports of the couplers at `now`, ns, determine the inputs of the tick. Does not allocate.
     pub fn observe_couplers(&mut self, now: u64, reports: impl Iterator<Item = Report>) {
         if let Some(Field::External(desk)) = self.workstation.field.as_deref_mut() {
             desk.observe(now, reports);
@@ -164,7 +164,7 @@ impl<L> ClosedLoop<L> {
         settled
     }
 
-    /// Contacts belong to the command in the buffers; the present ones are no news.
+    /// Attributes contacts to the command in the buffers. The present contacts are not reported again.
     pub fn note_resumed(&mut self) {
         let contacts = &mut self.checks.contacts;
         contacts.commands(self.course.memory());

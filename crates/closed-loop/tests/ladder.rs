@@ -203,8 +203,8 @@ fn mishap() -> impl Strategy<Value = DeliveryFault> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
-    /// With any late or restarted processes: the robot never jumps, a finished command is finished, every command ends,
-    /// and a PAUSE leads back to work.
+    /// With any late or restarted processes: the robot never jumps, a command reported as finished is finished, every
+    /// command ends, and a PAUSE leads back to work.
     #[test]
     fn mishaps_end_in_a_stop_and_a_report(
         mishaps in prop::collection::vec((0_u16..500, mishap()), 1..5),
@@ -655,7 +655,7 @@ fn external_pedestal_is_adopted_and_lost_without_answers() {
         rig.external.pedestal = OutsidePedestal { elsewhere: true, answers, pedestal, hand, table };
         rig.step(ProcessId::ALL);
     };
-    // The first tick of both ran without it.
+    // Both ladders ran their first tick without the pedestal.
     inside.ladder.restart(ProcessId::Pedestal);
     inside.ladder.restart(ProcessId::Hand);
     inside.ladder.restart(ProcessId::RotaryTable);

@@ -1,6 +1,6 @@
 //! Cuts the line to an emulated coupler for a time, and prints the state of the device in each tick.
 //!
-//! `cargo run --release -p couplers --example cut -- 0.2`: stale, then running. `-- 1`: tripped until it is released.
+//! `cargo run --release -p couplers --example cut -- 0.2` shows stale, then running. With `-- 1` the device trips.
 
 #![expect(clippy::print_stdout, reason = "an example says what it does")]
 
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         reads: vec![Span { area: Area::Input, first: 0, count: 4 }],
         writes: vec![Span { area: Area::Holding, first: 0x800, count: 1 }],
         safe: OutWords::ZERO,
-        // The output may be on at rest; else the release would be refused while it is asked for.
+        // The output may be on at rest. Otherwise the device would refuse a release while it is on.
         rest: one,
         alive: None,
     };

@@ -1,5 +1,5 @@
-//! An emulated coupler: process data, settings and a watchdog, as in the manual of the BK9000. No coupler was at hand:
-//! SPECNOTES.md lists the assumptions.
+//! An emulated coupler with process data, settings and a watchdog, as in the manual of the BK9000. It was not compared
+//! with a real coupler: SPECNOTES.md lists the assumptions.
 
 use modbus::{Bits, Error, Exception, Request, Tables, Words, server};
 
@@ -18,8 +18,8 @@ const IDENTITY: &[u8; 14] = b"BK9000 emulate"; // text in the registers of the i
 pub enum CouplerFault {
     #[default]
     None,
-    Freeze,         // its answers are good, but its inputs stand still
-    Stale,          // its answers are those to the previous request
+    Freeze,         // it answers, but its inputs no longer change
+    Stale,          // it answers with the answer to the previous request
     Terminals(u16), // its terminals report this status word
 }
 
@@ -29,7 +29,7 @@ enum Watchdog {
     Active {
         until: u64,
     },
-    /// It has fired; the first word of the reset was written, or not.
+    /// It has fired. `is_resetting` is true after the first word of the reset.
     Fired {
         is_resetting: bool,
     },
@@ -60,7 +60,7 @@ struct Answer {
 }
 
 impl Emulated {
-    /// A coupler as delivered, with so many registers of inputs and outputs; all are 0.
+    /// A coupler as delivered. It has `inputs` and `outputs` registers, and all are 0.
     #[must_use]
     pub const fn new(kind: Kind, unit: u8, inputs: u16, outputs: u16) -> Self {
         Self {
@@ -81,7 +81,7 @@ impl Emulated {
         }
     }
 
-    /// A coupler as delivered. `None` for a plan that is not of registers.
+    /// A coupler as delivered; `None` if the plan does not consist of registers.
     #[must_use]
     pub fn of(plan: &Plan) -> Option<Self> {
         let length = |spans: &[Span], first: u16| match spans {
@@ -133,7 +133,7 @@ impl Emulated {
         &self.outputs
     }
 
-    /// The registers of the outputs: as if another controller had left them so.
+    /// The registers of the outputs, for tests in which another controller writes them.
     pub const fn outputs_mut(&mut self) -> &mut [u16; WORDS] {
         &mut self.outputs
     }

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use rcs_core::Plain;
 
-/// A kind of coupler. A kind is added with its registers, its emulation and its tests.
+/// A kind of coupler. A new kind needs its registers, an emulation and tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Kind {
     /// Beckhoff BK9000 and relatives: Modbus TCP interface in infosys.beckhoff.com, bc9000/2802219403.
@@ -78,7 +78,7 @@ pub mod bk9000 {
     pub const WATCHDOG_LEFT: u16 = 0x1020;
     /// Time of the watchdog, ms; 0 switches it off. It can be written only while the watchdog is not active.
     pub const WATCHDOG_MS: u16 = 0x1120;
-    /// Resets a watchdog that has fired: [`RESET`] is written, one word after the other.
+    /// Write the two words of [`RESET`] here, one after the other, to reset a watchdog that has fired.
     pub const WATCHDOG_RESET: u16 = 0x1121;
     /// Telegrams that restart the watchdog: [`ANY_TELEGRAM`] or [`WRITE_TELEGRAMS`].
     pub const WATCHDOG_TYPE: u16 = 0x1122;
@@ -86,7 +86,7 @@ pub mod bk9000 {
     pub const RESET: [u16; 2] = [0xBECF, 0xAFFE];
     /// Value of [`WATCHDOG_TYPE`], as delivered.
     pub const ANY_TELEGRAM: u16 = 1;
-    /// Value of [`WATCHDOG_TYPE`] that a session sets: a reader must not keep outputs on.
+    /// Value of [`WATCHDOG_TYPE`] that a session sets, so that a client that only reads does not keep outputs on.
     pub const WRITE_TELEGRAMS: u16 = 0;
     /// Time of the watchdog as delivered, ms.
     pub const DELIVERED_MS: u16 = 1000;

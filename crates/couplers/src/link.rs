@@ -13,8 +13,8 @@ pub trait Link {
     /// Connects. Fails if the device does not accept the connection in time.
     fn connect(&mut self) -> Result<(), Fault>;
 
-    /// Sends a request and waits for its answer, with a limit. While an earlier request is unanswered, it waits for
-    /// that answer first, and drops it: two requests are never under way.
+    /// Sends a request and waits for its answer, with a limit. If an earlier request is unanswered, it first waits for
+    /// that answer and discards it, so that at most one request is pending.
     fn exchange<'a>(
         &mut self,
         request: &Request<'_>,

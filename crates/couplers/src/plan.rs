@@ -18,7 +18,7 @@ pub struct InWords {
     pub words: [u16; MOST_IN],
 }
 
-/// Words of all spans of outputs, as [`InWords`].
+/// Words of all spans of outputs, in the form of [`InWords`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct OutWords {
     /// The words.
@@ -101,7 +101,7 @@ pub struct Plan {
     pub fallback: Fallback,
     /// Time of the watchdog, ms; not used without one.
     pub watchdog_ms: u16,
-    /// Age at which inputs are stale, ms: the least one of all points.
+    /// Age at which inputs are stale, ms: the minimum over all points.
     pub stale_ms: u16,
     /// Spans to read; the input image consists of them.
     pub reads: Vec<Span>,
@@ -110,7 +110,7 @@ pub struct Plan {
     pub safe: OutWords,
     /// Bits of outputs that may be on while nothing moves.
     pub rest: OutWords,
-    /// A register that the device's program counts up; `None` without one.
+    /// A register that the device's program increments; `None` without one.
     pub alive: Option<Span>,
 }
 
@@ -141,7 +141,7 @@ pub enum PlanError {
     /// The kind cannot fall back in this way.
     #[error("a {kind} cannot fall back to {fallback}")]
     NoFallback { kind: Kind, fallback: Fallback },
-    /// The watchdog cannot be set to this time, or not be set above the time after which data are stale.
+    /// The watchdog time is out of range, or not longer than the age at which data are stale.
     #[error("a watchdog of {found} ms, expected at least {least} ms")]
     BadWatchdog {
         /// Least time, ms.

@@ -26,7 +26,7 @@ pub enum Mode {
 /// Orders of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct Orders {
-    /// Number of the tick. A session whose orders keep their number is without a controller.
+    /// Number of the tick. If it does not change, the session has lost its controller.
     pub tick: u64,
     /// Mode of the device.
     pub mode: Mode,
@@ -80,17 +80,17 @@ impl State {
 /// Why a device is tripped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Trip {
-    /// It was not written for so many ms: its watchdog has fired, or another limit has passed.
+    /// It was not written for this many ms, so its watchdog has fired or another limit has passed.
     Gap(u32),
     /// Its outputs are not those that were written last.
     Outputs,
-    /// Its settings are not those that were made.
+    /// Its settings differ from those that the session made.
     Settings,
     /// It refused a write with this exception code.
     Refused(u8),
     /// Its terminals report an error, with this status word.
     Terminals(u16),
-    /// The counter of its program stands still.
+    /// The counter of its program no longer changes.
     Frozen,
     /// The controller gave no orders for three ticks.
     NoOrders,
@@ -165,7 +165,7 @@ pub struct Counters {
     pub returns: u32,
     /// Trips.
     pub trips: u32,
-    /// Releases that were refused: an output was asked for that may not be on at rest, or the device was absent.
+    /// Releases that were refused, because an output was on that may not be on at rest, or the device was absent.
     pub refused_releases: u32,
 }
 
@@ -176,7 +176,7 @@ pub struct Report {
     pub state: State,
     /// Why it is not set up.
     pub refusal: Option<Refusal>,
-    /// Time before which the inputs were not sampled, ns: when their request was sent. `None` before the first answer.
+    /// Earliest time at which the inputs can have been sampled, ns: the time of their request. `None` before an answer.
     pub read_at: Option<u64>,
     /// The newest inputs.
     pub inputs: InWords,
@@ -206,7 +206,7 @@ impl Report {
         self.read_at.map(|read_at| now.saturating_sub(read_at))
     }
 
-    /// True if inputs may be used at the time `now` that are valid for `stale_ms`.
+    /// True if inputs with the limit `stale_ms` may be used at the time `now`.
     #[must_use]
     pub fn is_valid(&self, now: u64, stale_ms: u16) -> bool {
         let stands = matches!(self.state, State::Tripped(Trip::Frozen | Trip::Terminals(_)));

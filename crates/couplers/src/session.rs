@@ -26,11 +26,11 @@ use crate::{
     report::{Mode, Orders, Refusal, Report, State, Trip},
 };
 
-/// A device that returns later than this is tripped, also if its watchdog has more time: it may have none.
+/// A device that returns later than this trips, even if its watchdog time is longer or it has no watchdog.
 const MOST_GAP_MS: u64 = 500;
-/// Three ticks without orders, less the jitter of the exchanges: the third image is missing when it is next due.
+/// Three ticks without orders, minus the jitter of the exchanges, so that the third missing image is noticed when due.
 const MOST_SILENCE: u64 = 116 * MS;
-/// First and longest pause before a new connection; with it, inputs are valid ten ticks after a cut at the latest.
+/// First and longest pause before a new connection. Inputs are then valid at most ten ticks after the end of a cut.
 const PAUSES: (u64, u64) = (20 * MS, 320 * MS);
 /// Period in which outputs, settings and status of the device are read back.
 const CHECKED_EVERY: u64 = 1000 * MS;
@@ -71,7 +71,7 @@ pub struct Session {
     ending: Option<u64>, // when the end was first asked for
 }
 
-/// A device is not ready: it stays in its phase, and no connection has failed.
+/// The device is not ready. It stays in its phase, and its connection has not failed.
 enum Stop {
     Fault(Fault),
     Refused(Refusal),
@@ -191,7 +191,7 @@ impl Session {
             _ => {}
         }
         if self.report.state == State::Running {
-            // The thread itself may have stood still, with its connection in order.
+            // The thread may have been stopped although its connection is in order.
             self.check_gap(link.now())?;
         }
         self.release(orders);

@@ -43,13 +43,13 @@ impl Simulated {
         self.session.exchange(&mut self.line, orders);
     }
 
-    /// Cuts the connection, or joins it.
+    /// Cuts or restores the connection.
     pub const fn cut(&mut self, is_cut: bool) {
         self.line.is_cut = is_cut;
     }
 
     /// Stops the program of the coupler, or lets it continue. It then carries out the request that it had received,
-    /// also if the connection was reset in the meantime.
+    /// even if the connection was reset in the meantime.
     pub const fn hang(&mut self, is_hanging: bool) {
         self.line.is_cut = is_hanging;
         self.line.is_hanging = is_hanging;
@@ -92,9 +92,9 @@ struct SimulatedLine {
     is_cut: bool,
     /// The coupler has forgotten the connection.
     is_broken: bool,
-    /// Requests reach the coupler, but its program stands still.
+    /// Requests reach the coupler, but its program is stopped.
     is_hanging: bool,
-    /// A request that was sent while the line was cut: the coupler receives it when the line is joined.
+    /// A request sent over the cut line, which the coupler receives when the connection is restored.
     waiting: Option<Waiting>,
 }
 
@@ -132,7 +132,7 @@ impl Link for SimulatedLine {
             return Err(Fault::Disconnected);
         }
         if let Some(Waiting { frame, length }) = self.waiting.take_if(|_| !self.is_cut) {
-            // Carried out late; the answer is dropped.
+            // The coupler carries the request out late, and its answer is dropped.
             self.coupler.answer(self.now, &frame[..length], buffer).map_err(|_| Fault::Disconnected)?;
         }
         if self.waiting.is_some() {

@@ -108,7 +108,7 @@ fn start_sets_the_watchdog_before_the_first_write() {
     run.orders.mode = Mode::Run;
     run.ticks(2);
     assert_eq!(run.outputs(), VALVE | CLAMP);
-    // Without writes it fires after the time that was set; reading does not keep it.
+    // Without writes the watchdog fires after its time, because reading does not restart it.
     run.orders.mode = Mode::Watch;
     run.ticks(12);
     assert_eq!(run.device.coupler().fallbacks(), 0);
@@ -205,8 +205,8 @@ fn cut_shorter_than_the_watchdog_is_stale_and_continues() {
     assert_eq!(run.outputs(), VALVE | CLAMP);
 }
 
-/// A program that hangs may carry out the last request after the connection was reset: its outputs are those that were
-/// sent last, but not those that were acknowledged.
+/// A hung program may carry out the last request after the reset of the connection. Its outputs are then those sent
+/// last, but not those acknowledged last.
 #[test]
 fn request_that_a_hanging_coupler_carries_out_late_is_no_trip() {
     let mut run = Run::running();
@@ -230,7 +230,7 @@ fn cut_longer_than_the_watchdog_trips_until_released() {
     let State::Tripped(Trip::Gap(gap)) = run.state() else { panic!("{:?}", run.state()) };
     assert!((1000..1700).contains(&gap), "{gap} ms");
     assert!(run.device.report().is_valid(run.now, 100), "the inputs are read");
-    // Refused while an output is asked for that may not be on at rest.
+    // The release is refused while an output is commanded that may not be on at rest.
     run.orders.go = 1;
     run.ticks(3);
     assert_eq!((run.outputs(), run.device.report().counters.refused_releases), (0, 1));
@@ -266,7 +266,7 @@ fn restarted_coupler_trips_before_an_output_is_on() {
     for (asked, cause) in [(VALVE | CLAMP, Trip::Outputs), (0, Trip::Settings)] {
         let mut run = Run::running();
         run.orders.words = words(asked);
-        // The clock would show the restart, too.
+        // The clock word would also reveal the restart.
         run.is_alive = false;
         run.orders.words.words[CLOCK] = 0;
         run.orders.tick += 1;

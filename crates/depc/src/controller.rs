@@ -17,7 +17,7 @@ use crate::{
 
 /// A robot; positions are words of the line, and [`crate::exact::ExactFrames`] has the unrounded frames.
 pub trait Robot {
-    /// Present position, or the end of the present motion. Commanding it moves nothing.
+    /// Present position, or the end of the present motion. A command to this position moves nothing.
     fn present(&mut self) -> Plate;
 
     /// Sets the position to reach within the coming period. A refusal changes nothing and becomes a warning.
@@ -135,7 +135,7 @@ impl Controller {
         self.commanded
     }
 
-    /// One period. It moves the robot at most once.
+    /// Executes one period, in which the robot moves at most once.
     pub fn step(
         &mut self,
         inputs: &ControllerInputs,
@@ -376,7 +376,7 @@ mod tests {
                 (controller.state(), controller.warning(), robot.at),
                 (ControllerState::Warning, warning, HOME)
             );
-            // No answer before the operator's; then the report.
+            // The controller sends nothing until the operator answers, and then a report.
             let out = controller.step(&line(&[0x05]), &mut robot);
             assert!(out.tx.as_slice().is_empty() && out.dtr);
             let out = controller.step(&ControllerInputs { enter: true, ..well() }, &mut robot);
@@ -469,7 +469,7 @@ mod tests {
             let words = [n, -6293, -636, -9000, 13500, 0];
             let out = controller.step(&to(words, n.to_be_bytes()), &mut robot);
             assert_eq!((out.tx.as_slice(), out.moving), (&[0x06][..], true));
-            // The function of the previous command, whose position is reached.
+            // This is the function of the previous command, whose position is reached.
             assert_eq!(out.function, (n - 1).to_be_bytes());
         }
     }

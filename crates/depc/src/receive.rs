@@ -44,7 +44,7 @@ pub struct CommandReceiver {
 }
 
 impl CommandReceiver {
-    /// Adds the bytes of a tick, also none. Bytes that do not fit are garbage.
+    /// Adds the bytes of a tick, which may be none. Bytes that do not fit are garbage.
     pub fn accept(&mut self, rx: &LinkBytes) {
         let bytes = rx.as_slice();
         self.quiet = bytes.is_empty();
@@ -75,8 +75,8 @@ impl CommandReceiver {
         if first == START {
             return self.data();
         }
-        // Several restarts in a row are one, which the host has repeated. Other bytes must not follow, as the host
-        // waits for an answer: the late end of a frame may begin with the byte of a cancel.
+        // Several restarts in a row are one restart that the host has repeated. No other bytes may follow, because the
+        // host waits for an answer. The late end of a frame may begin with the byte of a cancel.
         let same = held.iter().take_while(|byte| **byte == first).count();
         match Control::from_byte(first) {
             Some(control) if same == held.len() => {
@@ -110,7 +110,7 @@ impl CommandReceiver {
             }
             return None;
         };
-        // Only restarts may follow. A frame and one after the late end of its first copy have the same checksum.
+        // Only restarts may follow. The checksum is also correct if the late end of a frame's first copy comes first.
         let behind = held.get(FRAME_BYTES..).unwrap_or_default();
         let alone = behind.iter().all(|byte| *byte == Control::Restart.byte());
         match DataCommand::parse(frame) {

@@ -19,9 +19,9 @@ use crate::{
     plate::{HALF_TURN, angle_between, angle_word},
 };
 
-/// They resolve 4e-5 in on the longest line. Fewer would miss a step past a pole, which may be a hundredth of a count.
+/// This many resolve 4e-5 in on the longest line. Fewer would miss a step past a pole of a hundredth of a count.
 const BISECTIONS: u32 = 24;
-/// 0.01 degree: an E this near is the pole; correcting it moves the tool point by less than half a count.
+/// An E this near to a pole (0.01 degree) is set to the pole, which moves the tool point by less than half a count.
 const POLE: i32 = 2;
 
 /// A position commanded to the controller: its words, and the tool frame before rounding.

@@ -256,8 +256,8 @@ impl Host {
         Sent { at, pose, speed, lag: pose.distance(&self.feedback) }
     }
 
-    /// Checked after a gap, in which a robot continues with its last speed reference. The next target may be at most
-    /// as far as its earlier lag, plus the distance that the limits allow in the longest permitted gap.
+    /// True if the robot has kept up during a gap, in which it continues with its last speed reference. Its distance
+    /// from the next target may exceed its earlier lag by what the limits allow in the longest permitted gap.
     fn has_kept_up(&self, sent: &Sent, target: &Pose) -> bool {
         let (way, turn) = target.distance(&self.feedback);
         let (Limits { speed, turn: rate, .. }, gap) = (self.settings.limits, seconds(self.settings.gap));

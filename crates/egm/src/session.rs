@@ -4,7 +4,7 @@
 
 use crate::message::{MciState, MotorState, RapidState, Robot};
 
-/// A number smaller by at most this is of an old message; a still smaller one means that the robot counts again.
+/// A sequence number lower by at most this is old; a still lower one means that the robot counts from the start again.
 const WINDOW: u32 = 250;
 
 /// State of the link.

@@ -126,7 +126,7 @@ fn limit_idle_states() -> io::Result<File> {
     Ok(file)
 }
 
-/// Lock memory; future memory only if no limit can make a later allocation fail because of that.
+/// Lock memory. Future memory is locked only if no limit can then make a later allocation fail.
 fn lock_memory(verdict: &mut Verdict) {
     let unlimited = geteuid().is_root() || getrlimit(Resource::Memlock).current.is_none();
     let (what, flags) = if unlimited {

@@ -207,7 +207,7 @@ mod tests {
         let external = ExternalInputs::default();
         for data in 1..=10 {
             let Ok(()) = runner.step(&mut one, &external, &data, 0);
-            // Even if the tick itself gets other data.
+            // Warm-ups have no effect, even with other data than the tick.
             (0..3).for_each(|_| warmed.warm_up(&mut other, &external, &77));
             let Ok(()) = warmed.step(&mut other, &external, &data, 0);
             assert_eq!(other.memory(), one.memory());

@@ -40,7 +40,7 @@ pub struct Status {
     pub allocations: u64,   // of the controller since the start
     pub controller_us: f64, // time that the controller took for the tick, microseconds
     pub over: bool,         // the run is over
-    /// Fault of the line to the robot; if any.
+    /// Fault of the line to the robot, if any.
     pub link: Option<&'static str>,
     pub processes: Vec<ProcessStatus>,
 }

@@ -88,7 +88,7 @@ fn a_robot_that_falls_behind_is_held_where_it_is() {
     let (way, _) = held.distance(&sample.feedback);
     let (off, _) = sample.target.distance(&sample.feedback);
     assert!(way < 10.0 && off < 0.5, "it moved on by {way} mm, and is {off} mm from its target");
-    // The host begins again from there.
+    // The host can begin a new path from this position.
     assert!(gateway.bridge.trouble().is_none() && gateway.host.is_running());
     let mut unsupervised = Gateway::new("sim,deviation=2", None);
     unsupervised.follows();

@@ -1,4 +1,4 @@
-//! Between the records of the controller and the words of the devices, in both directions.
+//! Converts between the records of the controller and the words of the devices.
 
 use couplers::{InWords, OutWords};
 use interfaces::{
@@ -39,12 +39,12 @@ pub const SAFETY: &str = "safety.ok";
 pub const LOST_MS: u32 = 1000; // age after which a device is lost, ms: 25 ticks
 
 impl Mapping {
-    /// Writes the words of the devices, in their order, into the inputs of the controller. The words of a device that
-    /// does not answer are those that it gave last, so its inputs keep their values, except those with `then`. While
-    /// any device is not fresh, the velocity knob is at 0 and the robot ramps to rest.
+    /// Converts the words of the devices, in their order, to inputs of the controller. The inputs of a device that does
+    /// not answer keep their last values, except those with `then`. While any device is not fresh, the velocity knob is
+    /// at 0 and the robot ramps to rest.
     pub fn apply(&self, devices: &[Seen], inputs: &mut DeviceInputs) {
         let mut health = FieldHealth::default();
-        // The id pins come first: the gripper decides on the line of the potentiometer.
+        // The id pins come first, because the line of the potentiometer depends on the gripper.
         for point in self.inputs.iter().filter(|point| point.group == Group::QuickChange) {
             point.apply(devices, inputs, &mut health);
         }
@@ -52,7 +52,7 @@ impl Mapping {
             point.apply(devices, inputs, &mut health);
         }
         for (seen, device) in devices.iter().zip(&self.devices) {
-            // A device without inputs is watched by its answers all the same.
+            // A device without inputs is monitored by its answers.
             let stale_ms = device.plan.stale_ms.min(u16::MAX - 1);
             health.any = health.any.max(seen.connection(stale_ms));
         }
@@ -77,7 +77,7 @@ impl Mapping {
         }
     }
 
-    /// The other end of [`collect`](Self::collect): what the words of the devices make the valves do.
+    /// The inverse of [`collect`](Self::collect): converts the words of the devices to the states of the valves.
     pub fn spread(&self, images: &[OutWords], outputs: &mut DeviceOutputs) {
         for point in &self.outputs {
             if let (Target::Word(output), Some(image)) = (point.target, images.get(point.slot.device)) {
@@ -86,7 +86,7 @@ impl Mapping {
         }
     }
 
-    /// The other end of [`apply`](Self::apply): what the sensors put into the words of the devices.
+    /// The inverse of [`apply`](Self::apply): converts the states of the sensors to the words of the devices.
     pub fn sample(&self, inputs: &DeviceInputs, images: &mut [InWords]) {
         let gripper = inputs.quick_change.end_effector_id;
         for point in &self.inputs {
@@ -98,7 +98,7 @@ impl Mapping {
         }
     }
 
-    /// `values` has one for each of the mapping's outputs; those of other outputs are not used.
+    /// Converts outputs of the workstation. `values` has one for each output of the mapping; other outputs are ignored.
     pub fn collect_station(&self, values: &[i64], images: &mut [OutWords]) {
         for (point, value) in self.outputs.iter().zip(values).filter(|(point, _)| point.is_station()) {
             if let Some(image) = images.get_mut(point.slot.device) {
@@ -107,7 +107,7 @@ impl Mapping {
         }
     }
 
-    /// The other end of [`collect_station`](Self::collect_station).
+    /// The inverse of [`collect_station`](Self::collect_station).
     pub fn spread_station(&self, images: &[OutWords], values: &mut [i64]) {
         for (point, value) in self.outputs.iter().zip(values).filter(|(point, _)| point.is_station()) {
             if let Some(image) = images.get(point.slot.device) {
@@ -116,7 +116,7 @@ impl Mapping {
         }
     }
 
-    /// `values` has one for each of the mapping's inputs.
+    /// Converts inputs of the workstation. `values` has one for each input of the mapping.
     pub fn sample_station(&self, values: &[i64], images: &mut [InWords]) {
         for (point, value) in self.inputs.iter().zip(values).filter(|(point, _)| point.is_station()) {
             if let Origin::Slot(slot) = point.from
@@ -141,7 +141,7 @@ impl Mapping {
         }
     }
 
-    /// A late input does not open the circuit: its device trips if it stays away. No `safety.ok`, no circuit.
+    /// True if `safety.ok` is mapped and off. A late input does not open the circuit: its device trips if it is lost.
     #[must_use]
     pub fn is_safety_open(&self, devices: &[Seen]) -> bool {
         let point = self.inputs.iter().find(|point| point.name == SAFETY);

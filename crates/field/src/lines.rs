@@ -7,9 +7,9 @@
 //!                 └──────────┴──────────┴──► failed: fault, `while` lost, too late, tripped device
 //! ```
 //!
-//! A late input neither fulfils nor breaks a condition. `done` counts only after `begun`, after it was seen off, or,
-//! without `begun`, after [`SETTLE_TICKS`]: an input left on by the last cycle ends no line. A line interrupted after
-//! it had begun continues without a second start. One call of [`Lines::step`] is one tick.
+//! A late input neither fulfils nor breaks a condition. `done` is valid only after `begun`, after `done` was off, or,
+//! without `begun`, after [`SETTLE_TICKS`], so that an input left on by the last cycle does not end a line. A line
+//! interrupted after it had begun continues without a second start. One call of [`Lines::step`] is one tick.
 
 mod failure;
 
@@ -33,7 +33,7 @@ pub struct Sequence {
     pub done: Vec<Condition>,
     pub during: Vec<Condition>, // conditions that must hold from the setting of the outputs to the end
     pub fault: Vec<Condition>,  // inputs that end the line with a failure
-    /// Outputs after `begun`, or at the end of a line without `begun`, or of one that failed.
+    /// Outputs to set after `begun`, or at the end of a line that has failed or has no `begun`.
     pub then: Vec<Setting>,
     pub begun_within_s: u16,
     pub within_s: u16,
@@ -74,7 +74,7 @@ struct Current {
     held: u64,     // ticks for which `done` has held
 }
 
-/// The lines that the devices execute: the present one, and the outputs of all.
+/// The line that the devices execute now, and the outputs of all lines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lines {
     outputs: Vec<i64>, // one value for each output of the mapping; only those of the workstation are used
@@ -188,7 +188,7 @@ impl Lines {
 enum Held {
     Yes,
     No,
-    Late, // an input is late, and no other one breaks the list
+    Late, // an input is late, and no other one breaks a condition
 }
 
 #[derive(Debug)]

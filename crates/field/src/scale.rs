@@ -1,10 +1,10 @@
-//! From the words of a device to the value of a point, and back.
+//! Converts the words of a device to the value of a point, and back.
 
 use std::ops::RangeInclusive;
 
 use serde::Deserialize;
 
-/// Beyond the span of `raw` by more than this part of it the wire is broken.
+/// A raw value that is beyond the span of `raw` by more than this fraction of it means a broken wire.
 const BROKEN: f64 = 0.03;
 
 /// How a value is stored in the words of a device.
@@ -61,8 +61,8 @@ pub struct Line {
 }
 
 impl Line {
-    /// The counts of a raw value. With `ends`, in which 0 and the greatest count mean a broken wire, a raw value within
-    /// the span is between them, and one beyond it by 3 % is the nearer end.
+    /// The counts of a raw value. The counts `ends` mean a broken wire: a raw value within the span never gives them,
+    /// and one that is beyond the span by 3 % gives the nearer end.
     #[must_use]
     pub fn counts(&self, raw: i64, ends: Option<&RangeInclusive<i64>>) -> i64 {
         let part = (raw as f64 - self.raw[0]) / (self.raw[1] - self.raw[0]);

@@ -19,7 +19,7 @@ pub enum Response<'a> {
 }
 
 impl<'a> Response<'a> {
-    /// Reads the answer after the header. [`Error::Refused`] if the server refused; other errors: not an answer.
+    /// Reads an answer after its header. [`Error::Refused`] if the server refused, another error if it is no answer.
     pub fn parse(request: &Request<'_>, body: &'a [u8]) -> Result<Self, Error> {
         let mut reader = Reader::new(body);
         let (expected, found) = (request.function(), reader.byte()?);

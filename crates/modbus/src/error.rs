@@ -48,14 +48,14 @@ pub enum Error {
         /// Function of the answer.
         found: u8,
     },
-    /// The byte count is not that of the quantity.
+    /// The byte count does not match the quantity.
     BadByteCount {
         /// Byte count expected.
         expected: u8,
         /// Byte count found.
         found: u8,
     },
-    /// The answer to a write request repeats another address, quantity or value.
+    /// The answer to a write request has another address, quantity or value than the request.
     BadEcho {
         /// Word of the request.
         expected: u16,
@@ -96,8 +96,8 @@ pub enum Error {
 }
 
 impl Error {
-    /// True: close the connection, because the next frame's position is unknown or an answer is not to the request.
-    /// False: only this request failed.
+    /// True if the connection must be closed, because the next frame's position is unknown or the answer is to another
+    /// request. False if only this request failed.
     #[must_use]
     pub const fn ends_connection(self) -> bool {
         match self {
@@ -118,7 +118,7 @@ impl Error {
         }
     }
 
-    /// A server's answer to a request with this error (AP 7: a wrong length is an illegal data value, too).
+    /// A server's answer to a request with this error. A wrong length is also an illegal data value (AP 7).
     #[must_use]
     pub const fn exception(self) -> Exception {
         match self {

@@ -33,7 +33,7 @@ pub struct Header {
 }
 
 impl Header {
-    /// Errors: [`Error::BadProtocol`], [`Error::BadLength`], [`Error::BadSize`] if not exactly one frame.
+    /// Splits one frame into header and body. Errors: [`Error::BadProtocol`], [`Error::BadLength`], [`Error::BadSize`].
     pub fn split(frame: &[u8]) -> Result<(Self, &[u8]), Error> {
         let expected = needed(frame)?;
         if frame.len() != expected {
@@ -47,7 +47,7 @@ impl Header {
         Ok((Self { transaction, unit }, body))
     }
 
-    /// The header, and what `body` writes. Returns the length of the frame.
+    /// Writes the header and what `body` writes. Returns the length of the frame.
     pub(crate) fn emit(
         self,
         buffer: &mut [u8],
@@ -68,9 +68,9 @@ impl Header {
     }
 }
 
-/// The bytes of `stream` after which more is known: the end of the frame, or of its incomplete length. A stream with
-/// this many bytes holds a complete frame. After [`Error::BadProtocol`] or [`Error::BadLength`] close the connection:
-/// the next frame's beginning is unknown.
+/// The number of bytes that `stream` must have: those of a whole frame, or of the length field while that is
+/// incomplete. Returns [`Error::BadProtocol`] or [`Error::BadLength`] if the next frame's beginning is unknown: close
+/// the connection.
 pub fn needed(stream: &[u8]) -> Result<usize, Error> {
     let Some((head, _)) = stream.split_first_chunk::<BEFORE_UNIT>() else { return Ok(BEFORE_UNIT) };
     let [_, _, protocol @ .., high, low] = head;
@@ -84,9 +84,9 @@ pub fn needed(stream: &[u8]) -> Result<usize, Error> {
     Ok(BEFORE_UNIT.saturating_add(usize::from(length)))
 }
 
-/// The first complete frame in `stream`; `None` if it is incomplete. Errors: as [`needed`].
+/// The first complete frame in `stream`; `None` if it is incomplete. Errors: those of [`needed`].
 pub fn first_frame(stream: &[u8]) -> Result<Option<&[u8]>, Error> {
-    // Fewer bytes than the length needs cannot be a frame.
+    // While the length field is incomplete, `needed` returns `BEFORE_UNIT`.
     needed(stream).map(|length| if length > BEFORE_UNIT { stream.get(..length) } else { None })
 }
 

@@ -253,7 +253,7 @@ pub(crate) fn bits_range(first: u16, bits: Bits<'_>) -> Range {
     Range { first, count: u16::try_from(bits.len()).unwrap_or(u16::MAX) }
 }
 
-/// The range of registers, as [`bits_range`].
+/// The range of registers; see [`bits_range`].
 pub(crate) fn words_range(first: u16, words: Words<'_>) -> Range {
     Range { first, count: u16::try_from(words.len()).unwrap_or(u16::MAX) }
 }
@@ -267,7 +267,7 @@ fn put_range(data: &mut Writer<'_>, range: Range) -> Result<(), Error> {
     data.word(range.count)
 }
 
-/// A byte count that must be `expected`, and the bytes.
+/// Reads a byte count, which must be `expected`, and that number of bytes.
 pub(crate) fn counted<'a>(reader: &mut Reader<'a>, expected: usize) -> Result<&'a [u8], Error> {
     let found = reader.byte()?;
     if usize::from(found) != expected {
@@ -280,7 +280,7 @@ fn words<'a>(reader: &mut Reader<'a>, range: Range) -> Result<Words<'a>, Error> 
     counted(reader, usize::from(range.count).saturating_mul(2)).map(Words::in_frame)
 }
 
-/// The byte count and the bits; bits after the last are 0 (AP 6.1).
+/// Writes the byte count and the bits. Unused bits of the last byte are 0 (AP 6.1).
 pub(crate) fn put_bits(
     data: &mut Writer<'_>,
     count: usize,

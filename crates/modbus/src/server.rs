@@ -6,7 +6,7 @@ use crate::{
     request::{Range, bits_range, coil, function, put_bits, put_words, words_range},
 };
 
-/// A missing table keeps the default methods: its functions are illegal. Writing methods write all values, or none.
+/// Tables of a device. Default methods refuse the functions of a missing table. A write changes all values or none.
 pub trait Tables {
     /// Called before each request is carried out; an exception refuses it.
     fn admit(&mut self, unit: u8, request: &Request<'_>) -> Result<(), Exception> {
@@ -20,31 +20,31 @@ pub trait Tables {
         Err(Exception::IllegalFunction)
     }
 
-    /// The discrete input at an address. Errors: as [`Self::coil`].
+    /// The discrete input at an address. Errors: those of [`Self::coil`].
     fn discrete_input(&mut self, address: u16) -> Result<bool, Exception> {
         let _ = address;
         Err(Exception::IllegalFunction)
     }
 
-    /// The holding register at an address. Errors: as [`Self::coil`].
+    /// The holding register at an address. Errors: those of [`Self::coil`].
     fn holding_register(&mut self, address: u16) -> Result<u16, Exception> {
         let _ = address;
         Err(Exception::IllegalFunction)
     }
 
-    /// The input register at an address. Errors: as [`Self::coil`].
+    /// The input register at an address. Errors: those of [`Self::coil`].
     fn input_register(&mut self, address: u16) -> Result<u16, Exception> {
         let _ = address;
         Err(Exception::IllegalFunction)
     }
 
-    /// Writes coils. Errors: as [`Self::coil`], or [`Exception::IllegalDataValue`].
+    /// Writes coils. Errors: those of [`Self::coil`], or [`Exception::IllegalDataValue`].
     fn write_coils(&mut self, first: u16, bits: Bits<'_>) -> Result<(), Exception> {
         let _ = (first, bits);
         Err(Exception::IllegalFunction)
     }
 
-    /// Writes the holding registers from an address on. Errors: as [`Self::write_coils`].
+    /// Writes the holding registers from an address on. Errors: those of [`Self::write_coils`].
     fn write_registers(&mut self, first: u16, words: Words<'_>) -> Result<(), Exception> {
         let _ = (first, words);
         Err(Exception::IllegalFunction)
@@ -151,7 +151,7 @@ fn at<T: Copy>(table: &[T], address: u16) -> Result<T, Exception> {
     table.get(usize::from(address)).copied().ok_or(Exception::IllegalDataAddress)
 }
 
-/// The `count` values from an address on, to be written.
+/// The `count` writable values from an address on.
 fn part<T>(table: &mut [T], first: u16, count: usize) -> Result<&mut [T], Exception> {
     let first = usize::from(first);
     table.get_mut(first..first.saturating_add(count)).ok_or(Exception::IllegalDataAddress)

@@ -21,7 +21,7 @@ impl<'a> Words<'a> {
         Self(Source::Memory(words))
     }
 
-    /// A last odd byte is ignored.
+    /// Registers in a frame; an odd last byte is ignored.
     pub(crate) fn in_frame(bytes: &'a [u8]) -> Self {
         Self(Source::Frame(bytes.as_chunks().0))
     }

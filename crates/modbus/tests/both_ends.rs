@@ -232,7 +232,7 @@ fn every_corrupted_byte_is_refused_or_is_data() {
         let request = owned.request();
         let mut client = Client::new(1);
         let [asked, answered] = frames(&request, &mut client);
-        // Header, function and byte count; all of an echo.
+        // The fixed bytes are header, function and byte count, or a whole echo.
         let fixed = if request.writes() && owned.function != 23 { answered.len() } else { 9 };
         for (index, change) in
             (0..answered.len()).flat_map(|index| (1..=u8::MAX).map(move |flip| (index, flip)))

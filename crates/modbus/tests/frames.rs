@@ -53,7 +53,7 @@ impl Tables for Device {
     }
 }
 
-/// The header is that of the first request to unit 17.
+/// A frame with the header of the first request to unit 17.
 fn frame(body: &[u8]) -> Vec<u8> {
     let length = u8::try_from(body.len() + 1).unwrap();
     [&[0, 1, 0, 0, 0, length, 17], body].concat()

@@ -1,4 +1,4 @@
-//! When a pair of fingers grips, keeps and releases a part, from its geometry ([`crate::squeeze`]) and the air's force.
+//! Decides when fingers grip, keep and release a part, from its geometry ([`crate::squeeze`]) and the air's force.
 
 use rapier3d_f64::math::{Pose, Real, Vector};
 
@@ -13,7 +13,7 @@ use crate::{
 
 const LEAST_FORCE: f64 = 0.25; // least force of a finger that holds a part, lb
 const TOUCHING: Real = 1e-4; // greatest distance between a pad and a face in contact, m
-/// A part between the fingers is nearer to the fingertips than this and its own radius, m.
+/// A part between the fingers is nearer to the fingertips than this distance plus its own radius, m.
 const REACH: Real = 0.2;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

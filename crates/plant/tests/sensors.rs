@@ -1,4 +1,4 @@
-//! From true values to words: noise, weight and bias, dead time, light, and hidden parts.
+//! Conversion of true values to words: noise, weight and bias, dead time, light, and hidden parts.
 
 use crate::rig::{Rig, UNIT_V1, description, table};
 use geometry::{frame::Vector, movetable::System};

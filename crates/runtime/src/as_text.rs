@@ -1,4 +1,4 @@
-//! Values of a configuration as strings, for serde, by `Display` and `FromStr`.
+//! Serde support for values of a configuration as strings, by `Display` and `FromStr`.
 
 use std::{fmt::Display, str::FromStr};
 

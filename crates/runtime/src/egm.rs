@@ -115,7 +115,7 @@ impl EgmPort {
         }
     }
 
-    /// Before the controller's tick: read the answers of the DEPC function, and the position of the robot.
+    /// Before the controller's tick, reads the answers of the DEPC function and the position of the robot.
     pub fn receive(&mut self) -> RobotInputs {
         self.read();
         let sample = self.line.sample();
@@ -130,7 +130,7 @@ impl EgmPort {
         }
     }
 
-    /// Passes the host's bytes on, or holds the robot. `exact`: Prim's tool frame, as T3I receives it and exactly.
+    /// Passes the host's bytes on, or holds the robot. `exact` is Prim's tool frame, rounded for T3I and unrounded.
     pub fn send(&mut self, tx: &LinkBytes, hold: bool, exact: Option<(WireFrame, Frame)>) {
         if let Some((wire, exact)) = exact {
             self.bridge.offer(&wire, &exact);

@@ -131,7 +131,7 @@ impl Log {
             epoch,
             words: words(&setup.store),
         });
-        // The configuration does not depend on them.
+        // The configuration does not depend on these attachments.
         attachments.extend(explanation::attachments());
         let start = record::Setup { epoch, run, attachments, cell: Some(model) };
         let recorder = Recorder::start_in(file, pace, start, tap, config.log_limit)?;
@@ -229,7 +229,7 @@ impl Log {
         self.recorder.attach(tick, Attachment { name, media_type, data });
     }
 
-    /// Call it before [`Log::tick`] of the same tick, but not in fast clock: equal runs must have equal logs.
+    /// Call it before [`Log::tick`] of the same tick. Omit it in fast clock, where equal runs must have equal logs.
     pub const fn timing(&mut self, controller_ns: u64, skipped: u64) {
         self.recorder.timing(Timing { controller_ns, skipped });
     }

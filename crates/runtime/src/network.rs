@@ -22,7 +22,7 @@ pub struct Network {
 }
 
 impl Network {
-    /// Fails if the options contradict each other, or the address cannot be used.
+    /// Starts the listener. Fails if the options contradict each other, or the address cannot be used.
     pub fn start(
         config: &RunConfig,
         endpoints: &[&Endpoint],

@@ -47,13 +47,13 @@ impl OwnPort {
         Self { robot, function, outputs, held: false, news: None }
     }
 
-    /// Before the controller's tick: pass on the answers of the function.
+    /// Before the controller's tick, passes on the answers of the function.
     pub const fn receive(&self) -> RobotInputs {
         RobotInputs { rx: self.outputs.tx, ready: self.outputs.dtr, unsent: false, resolvers: None }
     }
 
-    /// After the controller's tick: pass the host's bytes to the function, which starts again without trouble, or stop
-    /// the robot.
+    /// After the controller's tick, passes the host's bytes to the function, or stops the robot. Without trouble the
+    /// function starts again.
     pub fn send(&mut self, tx: &LinkBytes, hold: bool) {
         self.robot.advance();
         if hold && !self.held {

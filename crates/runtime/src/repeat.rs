@@ -112,7 +112,7 @@ pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
         inputs: operated.then(|| log.path().to_owned()),
         stand_by,
         unchecked: said(UNCHECKED).is_some(),
-        // The directory of the files is temporary.
+        // The directory of the files is temporary, so the log's own entry about the data is kept.
         remarks: said(DATA).map(|data| (DATA.to_owned(), data.to_owned())).into_iter().collect(),
         log: LogTarget::None,
         shared_memory: false,

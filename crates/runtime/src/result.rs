@@ -69,7 +69,7 @@ pub struct FailureResult {
 }
 
 impl FailureResult {
-    /// As attached at the end of the run: `Some(None)` for a successful run, `None` for a killed one.
+    /// The failure attached to a log: `Some(None)` for a successful run, `None` for a killed one.
     #[must_use]
     pub fn of_log(log: &Log) -> Option<Option<Self>> {
         if let Some(file) = log.attachment(explanation::FAILURE)

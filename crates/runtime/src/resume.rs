@@ -99,7 +99,7 @@ impl Resumed {
         }
         let is_simulated = config.robot.kind == RobotKind::Sim;
         if is_simulated {
-            // The simulated cell lives in the run: the plug is pulled in the tick of its last save.
+            // The simulated cell ends with the run, so the power fails in the tick of its last save.
             contents = Contents { newest: entry, torn: false, ..contents };
         }
         let cell = saved.to_vec();
@@ -121,7 +121,7 @@ impl Resumed {
         PlaceInJob { line, is_begun: begun, delayed }
     }
 
-    /// As saved. Errors: [`StartError::ResumedCell`] if it is of another description or version.
+    /// The saved cell. Errors: [`StartError::ResumedCell`] if it is of another description or version.
     pub fn cell(&self, description: &CellDescription) -> Result<Cell, StartError> {
         let path = journal::cell_beside(&self.path);
         let failed = |error: RestoreError| StartError::ResumedCell { path, why: error.to_string() };

@@ -103,7 +103,7 @@ impl Robot {
         }
     }
 
-    /// Before the controller's tick: receive from a robot outside the cell. Its time is part of the tick.
+    /// Before the controller's tick, receives from a robot outside the cell. This takes part of the tick's time.
     pub fn receive(&mut self) -> Option<RobotInputs> {
         let _section = Section::enter();
         match self {
@@ -118,7 +118,7 @@ impl Robot {
         }
     }
 
-    /// After the controller's tick, as part of it: send over the line. `exact` gives Prim's commanded tool frame,
+    /// Sends over the line after the controller's tick, as part of it. `exact` gives Prim's commanded tool frame,
     /// rounded and exact, for EGM.
     pub fn send(&mut self, outputs: &DeviceOutputs, exact: impl FnOnce() -> Option<(WireFrame, Frame)>) {
         let _section = Section::enter();
@@ -130,7 +130,7 @@ impl Robot {
         }
     }
 
-    /// After the controller's tick: the position of a robot outside the cell, if known. `acknowledged` gives the
+    /// The position of a robot outside the cell after the controller's tick, if known. `acknowledged` gives the
     /// position of a robot at a port.
     pub fn moved(&mut self, acknowledged: impl FnOnce() -> Option<Plate>) -> Option<Plate> {
         match self {

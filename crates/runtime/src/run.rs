@@ -351,7 +351,7 @@ fn acknowledged(state: &LadderState) -> Option<Plate> {
     host.is_running().then(|| host.position())
 }
 
-/// Prim's commanded tool frame in this tick, as T3I receives it and exactly.
+/// Prim's commanded tool frame in this tick, rounded as for T3I and unrounded.
 fn commanded(state: &LadderState, memory: &CommonMemory) -> Option<(WireFrame, Frame)> {
     state.prim.motion.map(|motion| (memory.prim.t3i.frame, motion.frame()))
 }

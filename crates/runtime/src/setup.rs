@@ -194,7 +194,7 @@ pub enum Couplers {
 }
 
 impl Couplers {
-    /// Returns the port of couplers over TCP, too.
+    /// Waits until the couplers are ready. Also returns the port of couplers over TCP.
     pub fn gather(
         self,
         config: &RunConfig,

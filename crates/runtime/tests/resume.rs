@@ -19,7 +19,7 @@ fn in_directory(directory: &tempfile::TempDir) -> PathBuf {
     directory.path().join("run.journal")
 }
 
-/// Run a job for some ticks, and end it without any of its own ends.
+/// Runs a job for some ticks, and then drops the run like a program that is killed.
 fn cut_off(job: &str, ticks: u64, path: &Path) {
     let config = RunConfig { journal: Some(path.to_owned()), ..config(job) };
     let mut run = Run::new(config, Box::new(())).expect("the job is sound");

@@ -13,7 +13,7 @@ use crate::failure;
 /// Names and tables of all processes, in the order of common memory.
 pub type Processes = &'static [ProcessInfo; PROCESS_COUNT];
 
-/// Entries that are kept of each kind, so that the history of a run without an end does not grow.
+/// Number of entries that are kept of each kind, so that the history of an endless run does not grow.
 const KEPT: usize = 4096;
 
 #[derive(Clone, Debug, PartialEq, Eq)]

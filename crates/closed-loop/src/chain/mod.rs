@@ -158,7 +158,7 @@ fn news(history: &History, at: Root, fired: &history::Fired) -> Option<String> {
     }
     let last = history.row(at.process, seen)?;
     let (now, before) = (history.row_of(at.process, fired)?, history.row_of(at.process, last)?);
-    // A table consulted first that decides now had passed on the decision before, by a row that no header names.
+    // An earlier table that decides now had passed the decision on before, by a row that no header names.
     let is_above = before.table.name != now.table.name;
     let passed = now.table.rows.iter().filter(|row| is_above && row.action == CONSULT);
     let changed = changed(passed.chain([before.row]), &now);

@@ -57,7 +57,7 @@ impl Desk {
         &self.mapping
     }
 
-    /// Begin to write outputs: all devices are set up.
+    /// Begin to write outputs. All devices must be set up.
     pub fn begin(&mut self) {
         for coupler in &mut self.couplers {
             (coupler.state, coupler.orders.mode) = (coupler.report.state, Mode::Run);
@@ -77,7 +77,7 @@ impl Desk {
         self.couplers.iter().map(|coupler| &coupler.orders)
     }
 
-    /// End: each device gets the outputs of the end, reads them back and disconnects.
+    /// Ends the couplers: each session writes the outputs of the end, reads them back and disconnects.
     pub fn end(&mut self) {
         for Coupler { orders, .. } in &mut self.couplers {
             (orders.tick, orders.mode) = (orders.tick.wrapping_add(1), Mode::End);
@@ -104,7 +104,7 @@ impl Desk {
         self.mapping.apply(&self.seen, inputs);
     }
 
-    /// Use everything that a tick needs, so that it is in the caches. Changes nothing that counts.
+    /// Use everything that a tick needs, so that it is in the caches. This does not affect the run.
     pub fn warm_up(&mut self) {
         let mut inputs = DeviceInputs::default();
         self.mapping.apply(&self.seen, &mut inputs);

@@ -87,9 +87,9 @@ pub enum NotSensed {
     /// An operator moved the part at a nest, the vise or the drum. The fingers centre it and measure its width, but
     /// nothing measures its position along the fingers.
     NoPicture,
-    /// An operator put a part at the destination of another one, or in its way, of which no picture is taken.
+    /// An operator put a part at the destination of another one, or in its way, and no picture is taken of that place.
     Occupied,
-    /// The status names this part of the goal as unconfirmed, as the machine has no sensor for it.
+    /// The status names this part of the goal as unconfirmed, because the machine has no sensor for it.
     Unconfirmed,
 }
 

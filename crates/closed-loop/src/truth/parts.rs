@@ -50,7 +50,7 @@ pub fn is_held(
     }
     let Some(meant) = place.first() else { return Ok(()) };
     let is = cell.t3().arm().tool().inverse().compose(&frame).position;
-    // The fingers centre the part along tool Y. Along the axis of a long part its grips differ.
+    // The fingers centre the part along tool Y. The grips of a long part differ along its axis.
     let off = (is.x - meant.position.x).hypot(is.z - meant.position.z);
     if off <= GRIP_INCHES {
         return Ok(());

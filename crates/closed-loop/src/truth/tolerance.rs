@@ -3,14 +3,14 @@
 /// Greatest distance of the tool frame from a goal: 0.02 by the controller, 0.02 for the words of the link.
 pub const THERE_INCHES: f64 = 0.04;
 pub const THERE_DEGREES: f64 = 0.15; // the same for the orientation, degrees
-/// Greatest distance from a part found by the camera, in: adds its second picture and its answer.
+/// Greatest distance from a part found by the camera, in: includes the errors of its second picture and answer.
 pub const SEEN_INCHES: f64 = 0.06;
 pub const SEEN_DEGREES: f64 = 0.35; // the same for the orientation, degrees
 /// Greatest offset of a held part along the fingers from the place of its grip, in.
 pub const GRIP_INCHES: f64 = 0.25;
-/// Greatest lack of a commanded opening, in: converters and hundredths of an order.
+/// Greatest amount by which an opening may be too small, in: errors of converters and rounding of commands.
 pub const OPENING_INCHES: f64 = 0.05;
-/// Greatest distance of two bodies in contact, in: sink of contacts and deflection of the fingers' springs.
+/// Greatest distance of two bodies in contact, in: penetration, and deflection of the fingers' springs.
 pub const TOUCH_INCHES: f64 = 0.03;
 /// Greatest distance from a commanded point at rest: the lag of the servos at the end of a ramp of 10 in/s².
 pub const STOP_INCHES: f64 = 0.20;

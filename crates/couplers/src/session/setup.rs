@@ -10,7 +10,7 @@ use crate::{
 };
 
 impl Session {
-    /// Sets the device up: its outputs must be permitted, its images long enough, its watchdog as planned.
+    /// Sets the device up. Its outputs must be permitted, its images long enough, and its watchdog as planned.
     pub(super) fn set_up(&mut self, link: &mut impl Link, orders: &Orders) -> Result<(), Stop> {
         let outputs = self.read_outputs(link)?;
         self.report.acknowledged = outputs;
@@ -24,7 +24,7 @@ impl Session {
         }
     }
 
-    /// Checks a device after a lost connection: it must not have been away too long, and must be as it was left.
+    /// After a lost connection, checks that the device was not away too long and is as the session left it.
     pub(super) fn come_back(&mut self, link: &mut impl Link) -> Result<(), Stop> {
         if self.written_at.is_some() {
             let outputs = self.read_outputs(link)?;
@@ -42,7 +42,7 @@ impl Session {
         Ok(())
     }
 
-    /// Checks that the device was written lately: after a longer gap its watchdog has fired, or a person must look.
+    /// Checks the time since the last write. After a long gap the watchdog has fired, or an operator must look.
     pub(super) fn check_gap(&self, now: u64) -> Result<(), Stop> {
         let limit = match self.plan.kind.facts().watchdog_ms {
             Some(_) => u64::from(self.plan.watchdog_ms).min(MOST_GAP_MS),
@@ -96,7 +96,7 @@ impl Session {
                 continue;
             }
             match self.write_register(link, setting.address, setting.expected) {
-                // Refused while the watchdog of an earlier run is active: the value read back decides.
+                // The coupler refuses this while an earlier run's watchdog is active, so the value read back decides.
                 Ok(()) | Err(Fault::Exception(_)) => {}
                 Err(fault) => return Err(Stop::Fault(fault)),
             }

@@ -51,7 +51,7 @@ impl Session {
         if let Some(words) = outputs {
             let written = self.write(link, words);
             if written != Err(Fault::Unanswered) {
-                // The device has carried it out, or may still do so.
+                // The device may have carried out the write, or may still do so.
                 self.sent = *words;
             }
             if let Some(first) = written? {
@@ -78,8 +78,8 @@ impl Session {
         Ok(())
     }
 
-    /// Writes all spans of outputs. Where the kind can, the last request also reads the first span of inputs, and its
-    /// words are returned.
+    /// Writes all spans of outputs. If the kind supports it, the last request also reads the first span of inputs and
+    /// returns its words.
     fn write(&mut self, link: &mut impl Link, words: &OutWords) -> Result<Option<InWords>, Fault> {
         let has_read_write = self.plan.kind.facts().has_read_write;
         let first_read = self.plan.reads[0];

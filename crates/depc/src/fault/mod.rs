@@ -30,7 +30,7 @@ pub use numbers::Numbers;
 pub const RULES: usize = 16;
 /// Number of kinds of faults.
 pub const KINDS: usize = FaultKind::ALL.len();
-/// Rate of a certain fault; rates are in millionths.
+/// Rate of a fault that always occurs; rates are in millionths.
 pub const ALWAYS: u32 = 1_000_000;
 /// The longest delay, stall or loss of the signal that one event causes, ticks.
 pub const MOST_TICKS: u16 = 1000;

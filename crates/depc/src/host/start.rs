@@ -16,7 +16,7 @@ impl Host {
         HostEvent::Started
     }
 
-    /// A late NAK may answer noise after a lost ACK: then a position may be repeated, but not a function.
+    /// After a lost ACK, a late NAK may answer noise. A position may then be repeated, but a function may not.
     pub(super) fn refused(&mut self) -> HostEvent {
         let ambiguous = self.waited > 1 && self.function() != NO_FUNCTION;
         if self.retries >= MOST_RETRIES || ambiguous {

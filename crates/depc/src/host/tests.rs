@@ -74,7 +74,7 @@ fn unsent_bytes_of_the_port_are_lost_and_reported() {
     assert_eq!(tick(&mut host, &[0x06], &position(NO_FUNCTION)), (HostEvent::None, vec![0x05]));
     assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
     host.clear_fault();
-    // A restart that the port does not send is repeated, and is the fault at the time limit.
+    // A restart that the port does not send is repeated. At the time limit it is the reported fault.
     host.set_silence_limit(4);
     tick(&mut host, &[], &Intent::Restart);
     for attempt in 1..=4 {

@@ -21,7 +21,7 @@ mod model;
 use explore::{Found, search};
 use model::{Carried, Event, KINDS, Kind, Panel, QUIET, Setting, Wrong};
 
-/// Ticks to a report or an acknowledgement: a second of silence, and the ticks before it.
+/// Most ticks until a report or an acknowledgement: a second of silence, and the ticks before it.
 const BOUND: u32 = RESTART + 11;
 const RESTART: u32 = depc::host::RESTART_TICKS as u32;
 
@@ -46,7 +46,7 @@ fn is_sound(setting: &Setting) -> Found {
     found
 }
 
-/// The page states the size of the search: a smaller one could hide an error by merging states.
+/// Compares the size of the search with the page: a smaller search could hide an error by merging states.
 fn is_stated(found: &Found) {
     let size = format!("| {} | {} |", found.states, found.ticks);
     let page = include_str!("../../../../docs/evidence.md").replace(',', "");

@@ -20,7 +20,7 @@ use rcs_core::tick::Tick;
 const OPERATOR_TICKS: u32 = 50; // until the operator answers a warning or restarts
 const REPORT_TICKS: u32 = 32; // ticks to report a stopped controller: the answer time, then a second of silence
 
-/// It reaches every position exactly, and checks every step.
+/// A robot that reaches every position exactly and checks every step.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Watched {
     joints: Joints,
@@ -47,7 +47,7 @@ impl Robot for Watched {
     }
 }
 
-/// Wrong conclusions: none, if checksums detect every fault and no noise looks like a frame without one.
+/// Wrong conclusions. None occur if checksums detect every fault and noise never looks like a frame without checksum.
 #[derive(Clone, Copy, Default, Debug, PartialEq)]
 pub struct Truth {
     pub started: u64,
@@ -274,7 +274,7 @@ impl Session {
         );
     }
 
-    /// Until the goal is reached and held on a repaired line, at most `most` ticks.
+    /// Runs on a repaired line until the goal is reached and held, for at most `most` ticks.
     pub fn until_reached(&mut self, most: u32) {
         for _ in 0..most {
             if self.tick() && self.at_goal() && self.controller.state() == ControllerState::Running {

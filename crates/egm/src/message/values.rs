@@ -38,7 +38,7 @@ impl Values {
         Ok(())
     }
 
-    /// A single value or packed values.
+    /// Takes a single value or packed values.
     pub(super) fn take(&mut self, field: &Field<'_>) -> Result<(), Error> {
         if let Value::Bytes(packed) = field.value {
             let mut packed = Reader::new(packed);
@@ -59,7 +59,7 @@ impl Values {
         Ok(())
     }
 
-    /// Each value with its own key: `egm.proto` is proto2 and not packed.
+    /// Writes each value with its own key, because `egm.proto` is proto2 and not packed.
     pub(super) fn write(&self, number: u32, writer: &mut Writer<'_>) -> Result<(), Error> {
         self.as_slice().iter().rev().try_for_each(|value| writer.double(number, *value))
     }

@@ -77,8 +77,7 @@ impl fmt::Display for Lost {
 }
 
 impl Lost {
-    /// The loss in one sentence: what the board's processes were doing, and the consequence; from the start of the
-    /// tick.
+    /// The loss in one sentence: what the board's processes were doing at the start of the tick, and the consequence.
     #[must_use]
     pub fn explain(&self, hws: &HwsCommand, memory: &CommonMemory) -> String {
         let doing = failure::unfinished_commands(self.board.processes(), hws, memory);

@@ -28,7 +28,7 @@ use crate::{
 
 /// Times of the exchanges in a slot.
 const EXCHANGES: [Duration; 2] = [Duration::from_millis(1), Duration::from_millis(32)];
-/// Longest time in which a device that is dropped confirms its last outputs.
+/// Longest time that a dropped device may take to confirm its last outputs.
 const MOST_ENDING: Duration = Duration::from_millis(300);
 
 #[derive(Debug, thiserror::Error)]

@@ -17,7 +17,7 @@ use rustix::{
 
 use crate::clock::{Monotonic, Time};
 
-/// Least time for a connection, also with a shorter time limit of answers.
+/// Shortest time limit for a connection, even if the limit for answers is shorter.
 const LEAST_CONNECT: Duration = Duration::from_millis(100);
 
 #[derive(Debug)]
@@ -55,7 +55,7 @@ impl TcpLink {
                 Ok(sent) => rest = rest.get(sent..).unwrap_or_default(),
                 Err(error) if error.kind() == ErrorKind::WouldBlock => {
                     if !wait(stream, PollFlags::OUT, until)? {
-                        // The coupler has not taken earlier requests; part of this one may be on its way.
+                        // The coupler has not read earlier requests, so a part of this one may already be sent.
                         return Err(Fault::Disconnected);
                     }
                 }

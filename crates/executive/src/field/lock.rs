@@ -1,7 +1,7 @@
-//! One process of this machine at a time writes a device.
+//! A lock on a device: only one process of this machine at a time may write it.
 //!
 //! The lock is a name in the abstract namespace of Unix sockets: the system frees it with the process, also after
-//! `kill -9`. Against other machines, the session notices their writes when it reads the outputs back.
+//! `kill -9`. The session detects writes of other machines when it reads the outputs back.
 
 use std::{
     io::{self, ErrorKind},
@@ -21,7 +21,7 @@ pub struct Lock {
 }
 
 impl Lock {
-    /// Fails if a process of this machine has the device, also this one.
+    /// Fails if any process of this machine, including this one, has the device.
     pub fn take(address: SocketAddr, unit: u8) -> Result<Self, DeviceError> {
         let failed = |source: io::Error| match source.kind() {
             ErrorKind::AddrInUse => DeviceError::InUse { address },
@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn device_is_free_again_after_its_lock_is_dropped() {
-        // Not a port of another test: tests run at the same time.
+        // No other test may use this port, because tests run at the same time.
         let device = SocketAddr::from((Ipv4Addr::new(127, 77, 0, 1), 502));
         let first = Lock::take(device, 1).expect("Linux has the namespace");
         assert!(matches!(Lock::take(device, 1), Err(DeviceError::InUse { .. })));

@@ -1,4 +1,4 @@
-//! Whether the system knows the hardware address of a coupler for good.
+//! Checks whether the system has a permanent entry for the hardware address of a coupler.
 //!
 //! A machine that loses its link discards learnt hardware addresses and keeps packets for up to three seconds: an old
 //! image arrives at the coupler when the link is back. With a permanent entry the packets are dropped.
@@ -8,7 +8,7 @@ use std::{fs, io, net::IpAddr};
 const TABLE: &str = "/proc/net/arp"; // the table of neighbours of IPv4
 const PERMANENT: u32 = 0x04; // flag of a permanent entry (`ATF_PERM`)
 
-/// True if the entry of `address` is permanent; `None` without an entry, as for the own machine or behind a router.
+/// True if the entry of `address` is permanent; `None` without an entry, as for this machine or behind a router.
 pub fn is_permanent(address: IpAddr) -> io::Result<Option<bool>> {
     fs::read_to_string(TABLE).map(|table| entry(&table, address))
 }

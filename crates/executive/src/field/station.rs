@@ -40,7 +40,7 @@ impl StationError {
 struct Shared {
     coupler: Mutex<Emulated>,
     is_cut: AtomicBool, // the network is down: nothing arrives, and nothing is answered
-    /// Number of restarts, changed while the coupler is locked: connections of an earlier one are closed.
+    /// Number of restarts, changed while the coupler is locked. Connections older than the last restart are closed.
     restarts: AtomicU64,
     stop: AtomicBool,
     traffic: Traffic,
@@ -64,7 +64,7 @@ pub struct Clients {
 
 impl Shared {
     fn coupler(&self) -> MutexGuard<'_, Emulated> {
-        // A thread that panicked has changed nothing by halves: the tables are words.
+        // A thread that panicked has left no partial change, because the tables consist of words.
         self.coupler.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -121,7 +121,7 @@ impl Station {
         }
     }
 
-    /// Requests that were sent while cut arrive when it is joined, unless the client has reset its connection.
+    /// Cuts or restores the network. Requests sent in between arrive later, unless their connection was reset.
     pub fn cut(&self, is_cut: bool) {
         self.shared.is_cut.store(is_cut, Ordering::Relaxed);
     }

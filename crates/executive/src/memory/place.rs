@@ -1,9 +1,9 @@
 //! Paths of a run, and the checks that only this user can access them.
 //!
-//! The directory of runs is in shared memory: one for temporary files is cleaned while a run lives, and a service has
-//! one of its own. `RCS_RUNS` names another directory, for tests; the files of iceoryx2 are never in it, because paths
-//! of sockets have at most 107 bytes. The prefix of a run's objects is a hash of a random number in the directory of
-//! runs: runs in different directories never collide, and another user cannot take a name first.
+//! The directory of runs is in shared memory: a directory for temporary files is cleaned while a run lives, and a
+//! service has its own. `RCS_RUNS` names another directory, for tests; the files of iceoryx2 are never in it, because
+//! paths of sockets have at most 107 bytes. The prefix of a run's objects is a hash of a random number in the directory
+//! of runs. So runs in different directories never collide, and another user cannot take a name first.
 
 use std::{
     fs::{self, DirBuilder, File, Metadata, OpenOptions, Permissions, TryLockError},

@@ -160,7 +160,7 @@ impl<const N: usize, T: Plain> SlotReader<N, T> {
         Ok(found)
     }
 
-    /// The value, if it was written in tick `stamp`. Does not allocate. Errors: as [`Self::read`].
+    /// The value, if it was written in tick `stamp`. Does not allocate. Errors: those of [`Self::read`].
     pub fn read_at(&self, stamp: Tick) -> Result<Option<T>, DecodeError> {
         let (written, value) = self.read()?;
         Ok((written == stamp).then_some(value))

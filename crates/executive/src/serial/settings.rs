@@ -89,7 +89,7 @@ impl FromStr for SerialSettings {
 }
 
 impl fmt::Display for SerialSettings {
-    /// In the notation of the command line; settings as in [`SerialSettings::new`] are left out.
+    /// Writes the notation of the command line, without the settings of [`SerialSettings::new`].
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { path, baud, parity, two_stop_bits, clear_to_send } = self;
         let usual = Self::new(path);

@@ -1,4 +1,4 @@
-//! Values on their way through the words of devices.
+//! Converts values to the words of devices and back.
 
 use diagnostics::Source;
 use interfaces::{
@@ -19,7 +19,7 @@ fn station() -> Mapping {
     Mapping::parse(&Source { name: path.to_owned(), text: text.into() }).unwrap()
 }
 
-/// Inputs through the words of devices of these ages.
+/// Carries inputs through the words of devices with these ages.
 fn carried(mapping: &Mapping, inputs: &DeviceInputs, ages: [u32; 3]) -> DeviceInputs {
     let mut images = [NOTHING; 3];
     mapping.sample(inputs, &mut images);

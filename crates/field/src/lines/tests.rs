@@ -202,7 +202,7 @@ fn short_gap_delays_a_line_only() {
     bench.age_ms = 8;
     bench.ticks(IDLE, 1).ticks(WORKS, 5);
     bench.age_ms = 400;
-    // The last words are held, and late ones break no condition.
+    // The last words are held, and late inputs do not break a condition.
     bench.ticks(WORKS & !CLAMPED, 5);
     bench.age_ms = 8;
     bench.ticks(WORKS, 5).ticks(IDLE | DONE, 1);
@@ -223,7 +223,7 @@ fn interrupted_machining_is_not_started_twice() {
     assert!(bench.failed().contains("fixture is tripped"), "not released yet");
     bench.is_tripped = false;
     bench.begin(MACHINE);
-    // It has ended meanwhile.
+    // The machine has ended in the meantime.
     bench.ticks(IDLE | DONE, 1);
     assert!(bench.ended());
     assert_eq!(bench.starts, 1);

@@ -1,4 +1,4 @@
-//! From the keys of a mapping file to a mapping, with all that does not fit.
+//! Converts the keys of a mapping file to a mapping, and reports every mistake.
 
 mod devices;
 mod groups;
@@ -22,7 +22,7 @@ fn says(path: &str, message: impl std::fmt::Display) -> Problem {
     Problem::of_entry(KIND.value, path, format!("{path}: {message}"))
 }
 
-/// The mapping of a file, and its errors. Entries with stand-ins have their problem already.
+/// The mapping of a file, and its errors. The problems of entries with stand-ins are already reported.
 pub(super) fn build(sheet: &Sheet, stand_ins: &StandIns, problems: &mut Problems) -> Mapping {
     if sheet.form != FORM && stand_ins.trusts("form") {
         problems.add(unlike("form", format_args!("{FORM}, which this version reads"), sheet.form));

@@ -44,7 +44,7 @@ const fn exchange_ms() -> u16 {
     20
 }
 
-/// An answer that comes later would be in the way of the next exchange.
+/// A later answer would delay the next exchange.
 const fn timeout_ms() -> u16 {
     15
 }

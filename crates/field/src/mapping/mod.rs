@@ -84,7 +84,7 @@ pub struct Device {
 pub enum Presence {
     Mapped,
     Fixed,  // all its inputs have a fixed value
-    Absent, // it is not there: jobs that need it are refused
+    Absent, // it does not exist: jobs that need it are refused
     Simulated,
 }
 
@@ -214,7 +214,7 @@ impl Mapping {
         Document::load(source, KIND, |sheet: &Sheet, stand_ins, problems| {
             built = Some(check::build(sheet, stand_ins, problems));
         })?;
-        // Without a problem the check has run.
+        // Without a problem, `built` is a mapping.
         Ok(built.unwrap_or_else(Self::nothing))
     }
 

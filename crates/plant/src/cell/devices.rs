@@ -70,8 +70,8 @@ pub struct Devices {
 }
 
 impl Devices {
-    /// `names` are of outputs and inputs; names of the controller's own records are permitted, and not used. Fails for
-    /// a point or a program that the cell does not have.
+    /// Devices for the outputs and inputs in `names`. Names of the controller's own records are permitted, and not
+    /// used. Fails for a point or a program that the cell does not have.
     pub fn new<'n>(
         cell: &CellDescription,
         programs: Programs,

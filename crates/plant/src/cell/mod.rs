@@ -300,7 +300,7 @@ impl Cell {
         *self.t3.arm().joints()
     }
 
-    /// The tool frame with the deflection of arm and fingers, in: between the fingertips, or there without a gripper.
+    /// The tool frame, in, with the deflection of arm and fingers: between the fingertips, even without a gripper.
     #[must_use]
     pub fn tool(&self) -> Frame {
         match self.changer.carried() {

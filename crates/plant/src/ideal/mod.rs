@@ -5,13 +5,13 @@
 //!
 //! | device | differs from the cell |
 //! |---|---|
-//! | arm | stiff: the tool is where the joints have it |
+//! | arm | stiff: the joints alone determine the tool frame |
 //! | fingers | stop at the part between them; a part in them does not slide |
-//! | released part | is in its nest, or on the body below it, at once; without one, it stays there |
+//! | released part | goes at once to its nest or onto the body below it; without one, it stays where it is |
 //! | camera | nothing hides a part |
 //! | force sensor | measures only the drum and its strike plate |
 //! | vise and machines | work at once |
-//! | robot | pushes no part: one that lies in the vise goes to its seat when the jaws close |
+//! | robot | does not push parts: a part in the vise goes to its seat when the jaws close |
 
 mod drumming;
 mod grasping;

@@ -24,7 +24,7 @@ pub enum Stage {
     Faulted,
     Ready,
     Enabled,
-    /// The pump is starting; the pressure comes after a short delay.
+    /// The pump is starting; the pressure builds up after a short delay.
     Rising,
     Manual,
     /// Moving to HOME after AUTO, or after the end of the program.

@@ -81,7 +81,7 @@ struct Jaws<'c> {
 }
 
 impl<'c> State<'c> {
-    /// The state at the start of a run: the vise is open, by its first program.
+    /// The state at the start of a run: the vise is open in its first program.
     pub fn new(cell: &'c CellDescription, data: TaskData<'c>) -> Self {
         let program = cell.vise.program.first();
         let jaws = program.map(|program| Jaws { program, opening: ViseOpening::Open });

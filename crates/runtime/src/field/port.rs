@@ -20,7 +20,7 @@ use interfaces::DeviceInputs;
 
 use crate::{boards::Controller, config::RunConfig, error::StartError, observer::Observer};
 
-/// Longest refusal beyond the watchdog: outputs and settings of an earlier run are free only after it has fired.
+/// Time after the watchdog's for which a device may refuse its set-up, until an earlier run's watchdog has fired.
 const REFUSED_FOR: Duration = Duration::from_secs(2);
 const PAUSE: Duration = Duration::from_millis(10); // pause between two looks at devices that are not ready
 
@@ -128,7 +128,7 @@ impl FieldPort {
         self.devices.iter().for_each(|device| device.align(start));
     }
 
-    /// Shortly before a tick: fetch the newest reports, and what the tick needs, into the caches.
+    /// Shortly before a tick, fetches the newest reports and everything that the tick needs into the caches.
     pub fn warm_up(&mut self, closed: &mut ClosedLoop<Controller>) {
         self.devices.iter_mut().for_each(|device| {
             device.report();
@@ -138,7 +138,7 @@ impl FieldPort {
         }
     }
 
-    /// Before the controller's tick: its inputs from the newest reports. Does not wait or allocate.
+    /// Before the controller's tick, sets its inputs from the newest reports. Does not wait or allocate.
     pub fn receive(&mut self, closed: &mut ClosedLoop<Controller>) {
         let _section = Section::enter();
         let now = nanoseconds(Monotonic.now());
@@ -151,7 +151,7 @@ impl FieldPort {
         self.reading = nanoseconds(Monotonic.now()).saturating_sub(now);
     }
 
-    /// After the controller's tick: its outputs. Does not wait or allocate.
+    /// After the controller's tick, passes its outputs to the devices. Does not wait or allocate.
     pub fn send(&mut self, closed: &mut ClosedLoop<Controller>) {
         let _section = Section::enter();
         let begun = nanoseconds(Monotonic.now());
@@ -162,7 +162,7 @@ impl FieldPort {
         self.shares.add(self.reading.saturating_add(writing));
     }
 
-    /// All devices at once get the outputs of the end and read them back. `inputs`: the controller's last.
+    /// Ends all devices at once: writes the outputs of the end and reads them back. `inputs` are the controller's last.
     pub fn end(&mut self, desk: &mut Desk, inputs: &DeviceInputs) {
         desk.end();
         for (device, orders) in self.devices.iter_mut().zip(desk.orders()) {

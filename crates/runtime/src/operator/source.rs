@@ -28,7 +28,7 @@ pub enum Inputs {
 pub struct Texts {
     blocks: Vec<(u32, Source)>, // blocks, by the generation of the task data that each created
     jobs: Vec<(u32, Source)>,
-    /// Loads of the workstation controller, which requests them in a repetition, too; only the verdicts are the log's.
+    /// The log's verdicts on loads of the workstation controller, which requests them again in a repetition.
     workstation: VecDeque<OperatorLine>,
     end: Tick, // the last tick of the log
 }

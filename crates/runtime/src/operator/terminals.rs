@@ -133,7 +133,7 @@ impl Terminals {
         had_some
     }
 
-    /// `memory` is common memory after `tick`; `data` are the task data of the next one.
+    /// Makes an entry. `memory` is common memory after `tick`; `data` are the task data of the next tick.
     pub fn enter(
         &mut self,
         entry: Entry,

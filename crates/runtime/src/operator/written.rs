@@ -38,7 +38,7 @@ pub fn read(words: &[&str]) -> Result<Write, String> {
     })
 }
 
-/// Returns the old and the new value, for operator and log. Errors: reason and remedy.
+/// Checks a write. Returns the old and the new value, for operator and log. Errors: reason and remedy.
 pub fn check(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     stands(write.variable.owner(), memory)?;
     check_value(write, memory, data)
@@ -56,7 +56,7 @@ pub fn check_value(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) ->
     Ok(format!("{} was {}, is {}", write.variable, old_value(write.variable, memory), new_value(write)))
 }
 
-/// Only then its variables or its block can be changed. Errors: the request that stops it.
+/// Checks that the process is stopped: only then can its variables be changed. Errors: the request that stops it.
 pub fn stands(process: ProcessId, memory: &CommonMemory) -> Result<(), String> {
     if may_be_written(process, memory) {
         Ok(())

@@ -26,7 +26,7 @@ const FALLBACKS: [Fallback; 2] = [Fallback::Zero, Fallback::Hold];
 /// Times between two exchanges, ms.
 const EXCHANGE_MS: std::ops::RangeInclusive<u16> = 10..=1000;
 
-/// Age after which the inputs of a device are stale, ms, unless a point says less.
+/// Age after which the inputs of a device are stale, ms, unless a point has a lower limit.
 const STALE_MS: u16 = 100;
 
 pub(super) struct Devices {
@@ -80,7 +80,7 @@ impl Devices {
         Err(Box::new(unlike(path, expected, format_args!("{name:?}")).near(name, &known)))
     }
 
-    /// Gives each device its images, and each point its word.
+    /// Assigns images to the devices and words to the points.
     pub(super) fn lay_out(
         &mut self,
         read: &Taken,

@@ -13,7 +13,7 @@ use super::{
     says, unlike,
 };
 
-/// What keeps a part while its output is off.
+/// What keeps a part gripped while the output is off.
 const HOLDS: [&str; 5] = ["trapped-air", "check-valve", "bistable", "spring", "nothing"];
 const HOLDERS: [Group; 6] = [Group::Grip, Group::V, Group::Tool, Group::Pedestal, Group::Vise, Group::Drum];
 /// Words for groups without points.
@@ -67,7 +67,7 @@ pub(super) fn presence(
     })
 }
 
-/// Checks what keeps a part without its output.
+/// Checks the entries that say what keeps a part gripped while the output is off.
 pub(super) fn check_holds(sheet: &Sheet, stand_ins: &StandIns, problems: &mut Problems) {
     for (name, holds) in &sheet.holds {
         let path = join("holds", name);
@@ -129,7 +129,7 @@ impl<'s> Points<'s> {
         }
     }
 
-    /// The points that the group has in addition. A fixed group needs no outputs.
+    /// The required points that the file lacks. A fixed group needs no outputs.
     fn missing(&self, group: Group) -> Vec<String> {
         let is_fixed = self.presence() == Presence::Fixed;
         let read = Input::all().filter(|input| !matches!(input.kind(), Kind::Cable | Kind::Camera));
@@ -156,7 +156,7 @@ impl<'s> Points<'s> {
     }
 }
 
-/// Names as a list that stays short.
+/// A list of names, shortened if it is long.
 fn list(names: &[String]) -> String {
     const SHOWN: usize = 4;
     let shown: Vec<&str> = names.iter().take(SHOWN).map(String::as_str).collect();

@@ -26,7 +26,7 @@ pub(super) fn lines(
     outputs: &[OutPoint],
     problems: &mut Problems,
 ) -> Vec<Sequence> {
-    // With a mistake in a point, its lines would be mistakes as well.
+    // A mistake in a point would cause further mistakes in its lines.
     if !problems.is_empty() {
         return Vec::new();
     }

@@ -19,7 +19,7 @@ use super::{
 };
 use crate::scale::{Format, Line};
 
-/// Ages after which a point can be stale, ms: from a tick on.
+/// Permitted ages after which a point is stale, ms; the least is one tick.
 const STALE_MS: RangeInclusive<u16> = 40..=10_000;
 const SHARED: &str = "grip.potentiometer"; // the input that the three grippers share (III.3.7)
 
@@ -141,7 +141,7 @@ pub(super) fn output(
     let plan = devices.list.get(slot.device).map(|device| &device.plan);
     let after = plan.map(|plan| (plan.fallback, plan.kind));
     match after {
-        // The word of a coupler whose outputs are 0, seen through `invert`.
+        // The coupler then has the word 0, to which `invert` applies.
         Some((Fallback::Zero, _)) if form.safe != i64::from(form.invert && point.is_bit()) => {
             let expected = format!(
                 "{}, which the device gives when its watchdog fires (fallback = \"zero\")",

@@ -1,4 +1,4 @@
-//! Which output and which sensor of the devices a point is.
+//! Assigns each point to an output or a sensor of the devices.
 
 use interfaces::point::Station;
 
