@@ -166,7 +166,7 @@ impl ContactCheck {
         Self { farthest: 0.0, ..self }
     }
 
-    /// Permit the present contacts, in a run that is resumed: the run before has judged them.
+    /// Permit the present contacts in a resumed run, because the earlier run has judged them.
     pub fn permit(&mut self, contacts: &[Contact]) {
         for contact in contacts.iter().filter(|contact| contact.touches()) {
             self.allowed.insert(contact.pair(), Allowance { depth: contact.depth, free: false });

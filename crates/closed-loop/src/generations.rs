@@ -40,8 +40,8 @@ impl Generations {
         self.store(self.number)
     }
 
-    /// The task data of the next tick if the job requests only its reload number `load` before it: those that
-    /// [`Generations::advance`] puts into effect after the tick with the buffers `memory`.
+    /// The task data of the next tick if the job requests only the reload `load` before it. [`Generations::advance`]
+    /// puts them into effect after the tick with the buffers `memory`.
     #[must_use]
     pub fn next(&self, memory: &CommonMemory, load: Option<u32>) -> &Store {
         if is_busy(memory) {

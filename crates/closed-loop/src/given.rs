@@ -41,7 +41,7 @@ pub struct RobotInputs {
     pub ready: bool,
     /// True if bytes of an earlier tick are still unsent.
     pub unsent: bool,
-    /// Readings of its resolvers, if it reports its position; otherwise those of the cell, which follows it.
+    /// Resolver readings of a robot that reports its position; otherwise those of the cell, which follows the robot.
     pub resolvers: Option<Resolvers>,
 }
 

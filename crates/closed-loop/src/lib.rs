@@ -161,7 +161,7 @@ impl<L, W: World> ClosedLoop<L, W> {
         act(&mut self.course, &self.generations.current().view())
     }
 
-    /// Those of the last tick; all zero while no process runs. A lost T3 Interface sends its last frame only once.
+    /// The last tick's outputs; all zero while no process runs. A lost T3 Interface sends its last frame only once.
     #[must_use]
     pub fn outputs(&self) -> DeviceOutputs {
         let memory = self.course.memory();

@@ -153,7 +153,7 @@ fn partition() -> impl Strategy<Value = (Vec<usize>, Vec<ProcessId>)> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
-    /// docs/design/tick.md "Order": nor does their distribution over boards, with suspended processes and single steps.
+    /// docs/design/tick.md "Order": the distribution over boards changes no bit, even with suspended processes.
     #[test]
     fn distribution_does_not_matter(
         (board_of, order) in partition(),

@@ -268,7 +268,7 @@ impl Host {
     /// Second half of a tick: send a due frame or `intent`. Returns true if `intent` was sent.
     pub fn transmit(&mut self, intent: &Intent, tx: &mut LinkBytes) -> bool {
         match intent {
-            // The report to the previous restart answers this one, too.
+            // The report to the previous restart also answers this one.
             Intent::Restart if self.state == HostState::Starting && self.restarted => {}
             Intent::Restart => self.restart(),
             Intent::Cancel if self.is_running() => {

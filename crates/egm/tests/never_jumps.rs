@@ -199,7 +199,7 @@ proptest! {
     }
 }
 
-/// The property above also holds for a host that never moves.
+/// The property above also holds for a host that never moves, so this test requires motion.
 #[test]
 fn a_robot_that_follows_is_moved() {
     let mut bench = Bench::new(1);

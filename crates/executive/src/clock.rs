@@ -1,8 +1,8 @@
 //! The times at which ticks run (docs/design/tick.md "Grid").
 //!
-//! The controller itself has no clock. [`Clock::Fast`] begins a tick at once; the simulated cell advances 40 ms a
-//! tick. [`Clock::Real`] uses an absolute [`Grid`]: slot `n` starts 40 ms x `n` after the start of the run; a late
-//! wake-up does not shift later slots; a slot whose start has passed is skipped and counted. At every wake-up:
+//! The controller itself has no clock. [`Clock::Fast`] begins a tick at once; the simulated cell advances 40 ms per
+//! tick. [`Clock::Real`] uses an absolute [`Grid`]: slot `n` starts 40 ms x `n` after the start of the run. A late
+//! wake-up does not shift later slots. A slot whose start has passed is skipped and counted. At every wake-up:
 //!
 //! ```text
 //! ticks run + slots skipped = time elapsed / 40 ms    (rounded down)

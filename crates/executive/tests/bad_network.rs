@@ -147,7 +147,7 @@ proptest! {
     }
 }
 
-/// Control: the property above also holds for a host that never moves, or that is always interrupted.
+/// The property above also holds for a host that never moves or is always interrupted, so this test requires motion.
 #[test]
 fn a_good_network_causes_no_interruption() {
     let mut bench = Bench::new("", WIDE);

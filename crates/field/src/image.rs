@@ -198,7 +198,7 @@ impl InPoint {
         own.or(self.line)
     }
 
-    /// A group is as old as the oldest of its points.
+    /// The age of a group is that of its oldest point.
     fn note(&self, connection: GroupHealth, health: &mut FieldHealth) {
         health.any = health.any.max(connection);
         let group = match self.group {

@@ -68,9 +68,9 @@ impl Header {
     }
 }
 
-/// The number of bytes that `stream` must have: those of a whole frame, or of the length field while that is
-/// incomplete. Returns [`Error::BadProtocol`] or [`Error::BadLength`] if the next frame's beginning is unknown: close
-/// the connection.
+/// The number of bytes needed in `stream`: a whole frame, or up to the end of the length field while that is
+/// incomplete. After [`Error::BadProtocol`] or [`Error::BadLength`] close the connection, because the next frame's
+/// beginning is unknown.
 pub fn needed(stream: &[u8]) -> Result<usize, Error> {
     let Some((head, _)) = stream.split_first_chunk::<BEFORE_UNIT>() else { return Ok(BEFORE_UNIT) };
     let [_, _, protocol @ .., high, low] = head;

@@ -110,7 +110,7 @@ pub fn palm(gripper: &Gripper) -> (Frame, Inches) {
 }
 
 /// The gripper on the robot. Its fingers are at the opening set by the air (in), without the deflection of their
-/// springs: the check needs the depth to which the arm has moved them.
+/// springs, because the check needs the depth to which the arm has moved them.
 #[must_use]
 pub fn worn(cell: &CellDescription, gripper: &Gripper, tool: &Frame, opening: f64) -> Vec<Body> {
     let tool = to_pose(tool);

@@ -1,8 +1,8 @@
 //! Positions of the grippers, on the robot, in a holster or on the floor, and their changes.
 //!
 //! A gripper that the ring holds moves with the arm. A released gripper lands on the holster under it, or falls. A
-//! gripper is *mated* while its pins touch, locked or not: only then it has air and sensors. Grippers at rest in their
-//! holsters are not simulated.
+//! gripper is *mated* while its pins touch, locked or not. Only a mated gripper has air and sensors. Grippers at rest
+//! in their holsters are not simulated.
 
 use geometry::frame::Frame;
 use interfaces::device::{HolsterSensors, QuickChangeSensors, QuickChangeValves};

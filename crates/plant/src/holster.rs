@@ -3,8 +3,8 @@
 //! A released gripper drops until its ears lie on the cheeks. It then slides forward (tool +Z) to the seat, where lips
 //! prevent lifting and a detent keeps it. Four proximity sensors detect the ears (III.3.4).
 //!
-//! Coordinates are in the frame of the holster: the tool frame of a gripper that rests on it and is not yet slid
-//! forward, X down. All grippers have the same ears, so any of them fits.
+//! Coordinates are in the frame of the holster: the tool frame of a gripper that rests on it and has not slid forward,
+//! X down. All grippers have the same ears, so any of them fits.
 
 use geometry::frame::{Frame, Rotation, Vector, rotation_vector};
 use serde::{Deserialize, Serialize};

@@ -25,7 +25,7 @@ impl Noise {
         Self::numbered(seed, stream as u64)
     }
 
-    /// The stream with a number, above those of the devices, for a seed.
+    /// The stream for a seed with a number above those of the devices.
     #[must_use]
     pub fn numbered(seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);

@@ -87,7 +87,7 @@ pub struct RunConfig {
     pub inputs: Option<PathBuf>,
     /// Make the job wait for an operator before its first line.
     pub stand_by: bool,
-    /// Execute commands also if `check` finds errors in the records that they use.
+    /// Execute commands even if `check` finds errors in the records that they use.
     pub unchecked: bool,
     /// Port of 127.0.0.1 for viewers of the run, 0 for any free port; needs a log.
     pub live: Option<u16>,

@@ -45,7 +45,7 @@ pub struct Words {
 }
 
 impl Beginning {
-    /// The page connects to the server that sent it. Other users can read it: no command line, no paths.
+    /// The page connects to its server. It contains no command line and no paths, because other users can read it.
     fn page(&self, job: &str, mut run: BTreeMap<String, String>) -> String {
         run.insert(TICK_0.to_owned(), self.epoch.of(Tick::BEFORE_START).to_string());
         let added = [

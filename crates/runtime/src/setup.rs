@@ -165,7 +165,7 @@ impl Setup {
             RobotKind::Egm(options) => Robot::Egm(Box::new(EgmPort::open(options, config, observer)?)),
             RobotKind::Own => Robot::Own(OwnPort::new(own.ok_or(StartError::NoOwnRobot)?)),
         };
-        // The cell description is a file, too.
+        // The cell description is one more file.
         let data = DataResult::new(data, store.sources().len() + 1);
         Ok(Self {
             store,

@@ -127,7 +127,7 @@ impl Run {
         Some(Failure { stopped: true, ..Failure::outside(*tick, kind, "T3", text) })
     }
 
-    /// The reason of the process that reports it, or the workstation controller's, and the events that explain it.
+    /// The reason of the process or workstation controller that reports a failure, and the events that explain it.
     pub(super) fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Ending {
         let reported = || self.closed.course().watch().failure(Ladder::processes());
         let found = match failure {

@@ -43,7 +43,7 @@ pub struct Around<'a> {
 pub struct Viewed {
     last: [Option<View>; KINDS],
     console: ControllerView,
-    /// Number of lines of the job, and of played jobs. The lines change only with them.
+    /// Number of lines of the job, and number of played jobs. The lines change only with these two numbers.
     lines: Option<(usize, u32)>,
 }
 

@@ -73,7 +73,7 @@ fn mapping(change: impl FnOnce(String) -> String) -> (tempfile::TempDir, FieldCo
     (directory, field)
 }
 
-/// Without the devices of the workstation, whose lines the cell then executes at once.
+/// Removes the devices of the workstation, whose lines the cell then executes at once.
 fn without_workstation(text: String) -> String {
     let points = text.split("\n# Lines of jobs").next().unwrap().lines();
     let is_kept = |line: &&str| {

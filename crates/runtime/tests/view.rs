@@ -48,7 +48,7 @@ fn cell_view_shows_the_state_of_the_cell() {
     assert_eq!(view.lateness, Default::default(), "a run in fast clock has no grid");
 }
 
-/// A button is pressed after a tick; the pressure is lost in the next one, which the account of the run names.
+/// A button that is pressed after a tick removes the pressure in the next tick, which the account of the run names.
 #[test]
 fn tick_of_an_emergency_stop_is_that_of_the_account() {
     let directory = tempfile::tempdir().expect("a directory can be made");

@@ -1,9 +1,9 @@
 //! The causes and consequences of a failure: the commands before it, the trace to its first cause, the reports up to
 //! Task.
 //!
-//! The trace begins with the process that first reported the reason which Task received. Its row has new conditions.
-//! If a process below failed or changed in the previous tick, the trace continues with it; else the cause is a device,
-//! a limit, or data. From there, the commands are traced upwards.
+//! The trace begins with the process that first reported the reason which Task received. Its row has new conditions. If
+//! a process below failed or changed in the previous tick, the trace continues with it. Otherwise the cause is a
+//! device, a limit, or data. From there, the commands are traced upwards.
 
 mod history;
 
@@ -167,7 +167,7 @@ fn news(history: &History, at: Root, fired: &history::Fired) -> Option<String> {
 
 const CONSULT: &str = "consult"; // the action of rows that pass the decision on to the next table
 
-/// The values for which a row fired, except those of conditions of earlier rows, without the step.
+/// The values for which a row fired, without the step and without the conditions of earlier rows.
 fn changed<'a>(before: impl Iterator<Item = &'a Row>, now: &Fired) -> Vec<String> {
     let known: Vec<&Condition> = before.flat_map(|row| row.when).collect();
     let asked = now.row.when.iter().zip(now.conditions());

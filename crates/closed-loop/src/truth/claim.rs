@@ -106,8 +106,8 @@ fn in_grip(object: &Name16, grip: i32, scene: &Scene<'_>) -> Vec<Frame> {
 }
 
 impl Claim {
-    /// True if this unconfirmed part of the goal leaves the claim open. Jaws without a force sensor do not show whether
-    /// they press, but the place of the part that they hold is still claimed.
+    /// True if the claim is left open, because the status names this part of the goal as unconfirmed. Jaws without a
+    /// force sensor do not show whether they press, but the place of the part that they hold is still claimed.
     pub const fn is_covered(&self, by: Unconfirmed, holds: bool) -> bool {
         match by {
             Unconfirmed::None => false,

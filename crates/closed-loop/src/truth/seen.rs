@@ -32,7 +32,7 @@ pub fn nearest(cell: &Cell, object: &str, near: &Vector) -> Option<PartState> {
     (beside(&nearest) <= SECTOR_INCHES).then_some(nearest)
 }
 
-/// The nearest part of its name within half a sector, or the one at the camera position that E-move reports.
+/// The nearest part of its name within half a sector, or the part at the camera position that E-move reports.
 fn meant(scene: &Scene<'_>, object: &str, near: &Vector, reported: Option<&Frame>) -> Option<PartState> {
     let is_reported = |part: &PartState| {
         reported.is_some_and(|reported| {

@@ -66,7 +66,7 @@ pub enum Direction {
 }
 
 impl FaultKind {
-    /// True if the rate is the probability per byte, false if per tick.
+    /// True if the rate is the probability per byte, false if it is that per tick.
     #[must_use]
     pub const fn is_per_byte(self) -> bool {
         matches!(self, Self::Drop | Self::Flip | Self::Duplicate | Self::Delay)

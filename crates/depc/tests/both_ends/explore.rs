@@ -12,7 +12,7 @@ type Onward = (u32, bool); // the next state without further faults; true for a 
 pub struct Found {
     pub states: usize,
     pub ticks: u64,
-    /// Ticks to the next acknowledged command or reported stop, without the operator and with one who answers at once.
+    /// Ticks to the next acknowledged command or reported stop: without the operator, and with one who answers at once.
     pub alone: u32,
     pub helped: u32,
     pub wrong: Option<(Vec<Event>, Wrong)>,

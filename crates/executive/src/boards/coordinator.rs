@@ -187,7 +187,7 @@ impl Coordinator {
             }
         }
         self.seats.iter_mut().for_each(|seat| seat.former.clear());
-        // The first call after a new listener connects to it, which allocates: it must not be in a tick.
+        // The first call after a new listener connects to it, which allocates, so it must not be in a tick.
         if let Some((giver, _)) = &self.ports {
             giver.wake();
         }

@@ -273,7 +273,7 @@ impl Member {
         if complete && changed {
             self.report.ready = true;
             ports.reports.write(self.tick, &self.report);
-            // The first call after a change of the run's nodes allocates: it must not be in a tick.
+            // The first call after a change of the run's nodes allocates, so it must not be in a tick.
             ports.taker.done();
         }
         Ok(complete)

@@ -99,7 +99,7 @@ pub struct SystemPulse {
     /// The load that boards must check in parallel with their ticks ([`load_file`](crate::memory::load_file)); 0 for
     /// none.
     pub load: u32,
-    /// The last load in effect; all loads up to it are, except those that were refused.
+    /// The last load in effect. Earlier loads are also in effect, unless they were refused.
     pub loaded: u32,
     /// External inputs of the tick.
     pub external: ExternalInputs,

@@ -186,8 +186,8 @@ impl EgmOptions {
         self.file(data).map(|file| file.placement)
     }
 
-    /// Expected lag of a robot whose file states none, ms: without the speed of its target, the time constant of a
-    /// position loop with a gain of 5 is added.
+    /// Expected lag, ms, of a robot whose file states none. If targets are sent without their speed, it includes the
+    /// time constant of a position loop with a gain of 5.
     #[must_use]
     pub const fn lag_ms(&self) -> u16 {
         if self.speed_ref { LAG_MS } else { LAG_MS + LOOP_MS }

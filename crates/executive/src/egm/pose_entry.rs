@@ -7,7 +7,7 @@ use diagnostics::{
 use egm::Pose;
 use serde::Deserialize;
 
-/// Messages about the file: lengths in mm, angles in degrees, and quaternions, whose components can be very small.
+/// Codes of the problems, and magnitudes: mm, degrees, and components of quaternions, which can be very small.
 pub(crate) const KIND: FileKind = FileKind {
     whole: "the file",
     syntax: "robot.syntax",

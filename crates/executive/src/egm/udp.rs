@@ -214,7 +214,7 @@ impl Worker {
             Cause::NotAllowed | Cause::OtherRobot(_) => &self.counts.elsewhere,
         };
         count.fetch_add(1, Ordering::Relaxed);
-        // If the ring is full, the count is right, and one of the last ones is shown.
+        // If the ring is full, the count is still correct, and one of the last datagrams is shown.
         let _ = self.refused.push(Refused { from, cause });
     }
 }

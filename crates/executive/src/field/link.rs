@@ -132,7 +132,7 @@ impl Link for TcpLink {
         let until = Monotonic.now() + self.timeout;
         if self.is_unanswered {
             let length = self.receive(until)?.ok_or(Fault::Unanswered)?;
-            // It must be the answer to the earlier request; its values are too old.
+            // This must be the answer to the earlier request, whose values are too old.
             let (header, _) = Header::split(self.received.get(..length).unwrap_or_default())?;
             if header.transaction != self.client.transaction() {
                 return Err(Fault::Frame(FrameFault::Transaction));

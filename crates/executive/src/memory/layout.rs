@@ -11,7 +11,7 @@ use super::cell::{CELL, CellView};
 /// cannot be reopened for writing while a reader holds it.
 pub type Epoch = u32;
 
-/// The executive's counts of a run, written once a tick. They depend on the machine and are not part of the digest.
+/// The executive's counts of a run, written once per tick. They depend on the machine and are not in the digest.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Pulse {
     /// The tick that was run last.

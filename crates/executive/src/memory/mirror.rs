@@ -130,7 +130,7 @@ impl Ports {
         self.publish();
     }
 
-    /// Returns false if the tick is being written at the moment: this message is left out, and the next one comes soon.
+    /// Returns false, without a message, if the tick is being written at the moment. The next message follows soon.
     fn publish(&self) -> bool {
         let Some(Published { external, memory, pulse }) = self.window.with(|published| *published) else {
             return false;

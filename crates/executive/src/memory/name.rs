@@ -42,7 +42,7 @@ impl RunName {
     }
 }
 
-/// Inode of the PID namespace of the machine, `PROC_PID_INIT_INO` of Linux. Others have greater numbers.
+/// Inode of the machine's PID namespace, `PROC_PID_INIT_INO` of Linux. Other namespaces have greater numbers.
 const OF_MACHINE: u32 = 0xEFFF_FFFC;
 
 /// Number of the PID namespace of this process; `None` for that of the machine, or without `/proc`.

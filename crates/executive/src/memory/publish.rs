@@ -97,7 +97,7 @@ impl Publisher {
     /// Copy what was published for the other threads of this program. Does not allocate.
     pub fn show(&self, external: &ExternalInputs, memory: &CommonMemory) {
         let pulse = self.pulse;
-        // If the other side is reading it, the next tick comes soon.
+        // If the other thread is reading the copy, the next tick updates it soon.
         let _ = self.window.with(|seen| *seen = Published { external: *external, memory: *memory, pulse });
     }
 }

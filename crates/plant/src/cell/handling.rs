@@ -202,8 +202,8 @@ impl Cell {
         }
     }
 
-    /// The part that stops the jaw first, its step and its geometry: of the steps whose faces it covers well, the
-    /// shallowest.
+    /// The part that stops the jaw first, with its step and geometry. The step is the shallowest of those whose faces
+    /// the part covers well.
     fn between_jaws(&self) -> Option<(usize, usize, Squeeze)> {
         let standing = (0..self.parts.len()).filter_map(|index| {
             let offers: Vec<_> = self

@@ -141,7 +141,7 @@ impl Cell {
             let chain = Chain::new(&self.joints());
             let weight = self.description.gripper.weight;
             loads.push(Load::weight(END_PLATE, chain.along(END_PLATE, TOOL_CENTRE), weight));
-            // In the axes of the tool: the load on the springs of fingers and held part, including their weight.
+            // The load on the springs of fingers and held part, including their weight, in the axes of the tool.
             let wrench = self.hand(hand).load(&self.world);
             let tool = self.t3.arm().tool();
             loads.push(Load {

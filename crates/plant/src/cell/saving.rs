@@ -6,7 +6,7 @@
 //! ```text
 //! RCSCELL\0   version u32   length u64   digest u64   the state, in postcard
 //! ```
-//! All numbers little-endian; length and digest are those of the state.
+//! All numbers are little-endian; length and digest are those of the state.
 
 use rcs_core::digest::Digest;
 

@@ -20,7 +20,7 @@ pub const PART: Group = Group::GROUP_3;
 /// Collision group of the palms of hands: a held part still collides with the palm.
 pub const PALM: Group = Group::GROUP_6;
 
-/// Distance of the backs of the movable jaw behind those of the fixed one, in: it must not drag the part.
+/// Distance of the backs of the movable jaw behind those of the fixed one, in, so that no back drags the part.
 const RELIEF: f64 = 0.02;
 
 const FRICTION: Real = 0.30; // coefficient of friction of steel on trays, vise and floor
@@ -177,8 +177,8 @@ pub fn jaw_blocks(vise: &Vise) -> Vec<Block> {
     pieces.collect()
 }
 
-/// The blocks of a jaw without the steps of all programs: ranges of depth into the vise, depth behind the inner face,
-/// and height.
+/// The blocks of a jaw without the steps of all programs. Each has ranges of depth into the vise, of depth behind the
+/// inner face, and of height.
 fn jaw_pieces(vise: &Vise) -> Vec<[[f64; 2]; 3]> {
     let [into, thickness, height] = vise.jaw;
     let mut depths: Vec<f64> = vise.program.iter().map(|program| program.depth).collect();

@@ -145,8 +145,7 @@ impl<'c> State<'c> {
 }
 
 impl Jaws<'_> {
-    /// Why a part cannot be inserted: none of its sides fits between the clamping faces and is too wide to fall
-    /// through.
+    /// Why a part cannot be inserted: no side of it fits between the clamping faces without falling through.
     fn refuse(&self, part: &PartType) -> Option<String> {
         let (opening, how) = match self.opening {
             ViseOpening::Close => {

@@ -1,7 +1,7 @@
 //! Checks that task data, job and cell description describe the same cell.
 //!
-//! Each was already checked alone. This module finds names that only one of them has, which would make a run fail late,
-//! and compares numbers: `sizes`, `places`, `job`.
+//! Each was already checked alone. This module finds names that only one of them has, which would stop a run late. The
+//! modules `sizes`, `places` and `job` compare numbers.
 
 mod alike;
 mod both;
@@ -239,7 +239,7 @@ impl Names<'_> {
             .collect()
     }
 
-    /// Check that each part is an object with the same number of the camera as in the task data.
+    /// Check that each part is an object of the task data with the same number for the camera.
     fn objects(&mut self, cell: &CellDescription) {
         for (number, part) in cell.part.iter().enumerate() {
             let object = Name16::new(&part.name).ok().and_then(|name| self.data.object_named(&name));

@@ -68,7 +68,7 @@ fn beyond(what: &str, size: i32, [low, high]: [f64; 2], gripper: &str) -> Option
     outside.then(|| format!("{what} {size:.2} in, {gripper} opens from {low:.2} to {high:.2} in"))
 }
 
-/// The message for a force above the greatest of the fingers, or too small to hold anything.
+/// The message for a force that is greater than the fingers can exert, or too small to hold anything.
 fn unfit_force(what: &str, force: i32, gripper: &Gripper) -> Option<String> {
     let greatest = gripper.greatest_force;
     if force <= 0 {

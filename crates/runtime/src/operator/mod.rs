@@ -1,10 +1,9 @@
 //! The operator of a run (IV): requests between two ticks, their permitted senders, and their execution.
 //!
 //! A request is a line of text ([`Request`]). Switches go to the joystick box ([`Operator::at_the_box`]), entries at
-//! terminals to a further input of the controller ([`Operator::at_the_terminals`]), commands through the mailbox and
-//! numbers of the job player. [`Run::operate`](crate::Run) does this after the motion of the cell and before the job
-//! player, so a request takes effect in the next tick. The log has it with that tick, so that the inputs can be
-//! replayed.
+//! terminals to another input of the controller ([`Operator::at_the_terminals`]), and commands to the mailbox, with the
+//! numbers of the job player. [`Run::operate`](crate::Run) executes requests after the motion of the cell and before
+//! the job player, so a request takes effect in the next tick. The log contains it with that tick, for a replay.
 //!
 //! One operator commands: the first that sends a request for a motion, until it sends `leave` or disconnects. Every
 //! operator may send a stop.

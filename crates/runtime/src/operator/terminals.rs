@@ -91,7 +91,7 @@ pub struct Terminals {
     shown: OperatorInputs,
     passes: VecDeque<u16>, // processes to execute in the next ticks, one entry per tick
     writes: [Option<Write>; WRITES], // values to write in the next tick
-    /// Name of the held object, and its age, ticks. E-move stops for two ticks, because only then it can be written.
+    /// Name of the held object, and its age, ticks. E-move stops for two ticks, in which the name can be written.
     naming: Option<(Write, u8)>,
     order: Option<HandOrder>,   // order to the pedestal in the next tick
     confirmed: Option<Support>, // statement about the object in the gripper, for the next tick

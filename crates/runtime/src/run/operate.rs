@@ -67,7 +67,7 @@ impl Run {
             let verdict = self.operator.carry_out(&input, &mut around);
             let verdict = match (self.operator.take_later(), input.refusal()) {
                 (None, _) => verdict,
-                // In a repetition it has the tick of its execution.
+                // In a repetition, the request has the tick of its execution.
                 (Some(Later::Await), None) if input.is_of_a_session() && tick.since(since) < REST_TICKS => {
                     self.operator.keep(input, since);
                     continue;
