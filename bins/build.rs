@@ -1,5 +1,5 @@
-//! Gives the commit for `--version`, if the source is a git repository, and lists what the programs carry: the files of
-//! `data/` with their bytes, and the sources of the decision tables, which a screen of the console shows.
+//! Sets the commit for `--version`, if the source is a git repository, and embeds in the programs the files of `data/`
+//! and the sources of the decision tables, which the console shows.
 
 use std::{
     env, fs, io,
@@ -27,7 +27,7 @@ fn main() -> io::Result<()> {
     list_tables(&root)
 }
 
-/// Write the list of the files that the programs carry.
+/// Write the list of the embedded data files.
 fn list_data(root: &Path) -> io::Result<()> {
     let entries = files(&root.join("data"))?.into_iter().map(|file| {
         let path = file.strip_prefix(root).unwrap_or(&file);

@@ -19,8 +19,7 @@ pub const BUILT_IN: &str = "built-in";
 /// The data directory if no other one is named.
 const DATA: &str = "data";
 
-/// The value of `--data` if none is given: `data` in the working directory, or [`BUILT_IN`] if there is nothing of that
-/// name.
+/// The default of `--data`: `data` in the working directory, or [`BUILT_IN`] if no such directory exists.
 #[must_use]
 pub fn default_data() -> &'static str {
     if fs::symlink_metadata(DATA).is_ok() { DATA } else { BUILT_IN }
@@ -39,8 +38,8 @@ pub fn carry() {
     carried::carry(FILES);
 }
 
-/// What a path of the command line means: the path itself if something is there; else the file or directory of that
-/// name that is carried; else the path itself.
+/// The meaning of a path on the command line: an existing path, else the built-in file or directory of that name, else
+/// the unchanged path.
 #[must_use]
 pub fn resolve(path: PathBuf) -> PathBuf {
     let inside = Path::new(&format!("{PREFIX}{}", path.display())).to_path_buf();
@@ -48,11 +47,11 @@ pub fn resolve(path: PathBuf) -> PathBuf {
     if !is_there && (files::is_file(&inside) || files::is_directory(&inside)) { inside } else { path }
 }
 
-/// Write all files into a directory, which is made if it is not there. Returns how many were written.
+/// Write all files into a directory, and create it if missing. Returns the number of files.
 ///
 /// # Errors
-/// [`io::ErrorKind::AlreadyExists`] with the path if a file of that name is there, before anything is written; else what
-/// the system says.
+/// [`io::ErrorKind::AlreadyExists`] with the path if a file exists, before any file is written; otherwise the system's
+/// error.
 pub fn write(directory: &Path) -> io::Result<usize> {
     let place = |file: &Carried| directory.join(file.path);
     if let Some(there) = FILES.iter().map(place).find(|path| fs::symlink_metadata(path).is_ok()) {
@@ -87,7 +86,7 @@ impl Made {
         Ok(())
     }
 
-    /// Remove them. The error that stopped the work is the one to report, so that errors are ignored here.
+    /// Remove the created files and directories. Errors are ignored, because the caller reports the original error.
     fn remove(self) {
         for path in self.0.iter().rev() {
             let _ = fs::remove_file(path).or_else(|_| fs::remove_dir(path));
@@ -134,7 +133,7 @@ mod tests {
     #[test]
     fn a_failed_copy_leaves_no_file() {
         let place = tempfile::tempdir().unwrap();
-        // A directory of that name cannot be made, after many files were written.
+        // This directory cannot be created, after many files were written.
         let blocked = "data/robots";
         assert!(FILES.iter().position(|file| file.path.starts_with(blocked)).unwrap() > 10);
         let target = place.path().join("new").join(blocked);
@@ -162,7 +161,7 @@ mod tests {
         let mine = place.path().join("cell.toml");
         fs::write(&mine, "").unwrap();
         assert_eq!(resolve(mine.clone()), mine);
-        // Tests run in the directory of their crate, which has no data.
+        // Tests run in the directory of their crate, which has no `data`.
         assert_eq!(default_data(), BUILT_IN);
         assert_eq!(data_directory(Path::new(BUILT_IN)).as_deref(), Some(Path::new("shipped:data")));
         assert_eq!(data_directory(Path::new("data")), None, "a directory that is named must exist");

@@ -33,7 +33,7 @@ fn no_heap_is_allocated_after_the_start() {
         std::env::var("RCS_TICKS").map_or(TICKS, |text| text.parse().expect("RCS_TICKS is a number"));
     let boards = std::env::var("RCS_BOARDS").unwrap_or_else(|_| "one".to_owned());
     let scratch = Scratch::new("allocation");
-    // A missing object, and an unknown place.
+    // One job misses an object, the other names an unknown place.
     scratch.job_with("clevis.job", "** tray UNIT_1 3 LCLEVIS_BH", "%");
     fs::rename(scratch.file("clevis.job"), scratch.file("no-part.job")).expect("a job");
     scratch.job_with("tool-change.job", "** drum release", "%");

@@ -81,7 +81,7 @@ impl Bench {
         Running { bench: self, child: child.expect("rcs-run can be started") }
     }
 
-    /// Nothing of the run is left, and the next one of the same name works at once.
+    /// Nothing of the run is left, and the next run with the same name works at once.
     fn assert_clean(&self) {
         assert_eq!(memory::traces(&self.name), Vec::<PathBuf>::new());
         let next = self.run("linkbar", "split", &["--ticks", "20"]);
@@ -210,7 +210,7 @@ fn strike(
     panic!("never caught in {ATTEMPTS} attempts; the last one said: {said}");
 }
 
-/// A zombie has ended: a first process that does not reap leaves some.
+/// A zombie is treated as ended. Zombies remain if process 1 does not reap them.
 fn is_alive(pid: Pid) -> bool {
     let stat = fs::read_to_string(format!("/proc/{}/stat", pid.as_raw_nonzero())).unwrap_or_default();
     stat.rsplit_once(") ").is_some_and(|(_, state)| !state.starts_with(['Z', 'X']))
@@ -301,7 +301,7 @@ fn carries(memory: &CommonMemory) -> bool {
 fn a_killed_board_stops_the_robot_and_is_named() {
     for Kill { board, phase, moment, said, held } in KILLS {
         let bench = Bench::new("killed");
-        // The signal may have arrived after its moment.
+        // The signal may have arrived too late.
         let in_the_phase = |_: &Ended| moment(&bench.last_memory());
         let ended = strike(&bench, (*board, Signal::KILL), shows(moment), in_the_phase);
         println!("{phase}: {}", ended.last_words());
@@ -423,13 +423,13 @@ fn boards_are_started_by_hand_and_strangers_are_refused() {
     assert_eq!(stranger.status.code(), Some(2), "{reason}");
     assert!(reason.contains("board 4 cannot take part") && reason.contains("other task data"), "{reason}");
 
-    // A board that is killed while others are missing leaves its place to the next.
+    // The place of a board that is killed while others are missing is free for the next board.
     let mut first = seated(&bench, "2", &data);
     running.hear("board 2 is ready");
     first.kill().expect("it has not been waited for");
     first.wait().expect("it can be waited for");
     running.hear("board 2 has ended");
-    // The state that a console shows meanwhile.
+    // Meanwhile a console shows these boards.
     let there = || {
         let boards = coming_up(&bench.name)?;
         Some(
@@ -472,7 +472,7 @@ fn manually_started_board_is_replaced_manually() {
     lost.wait().expect("it can be waited for");
     let successor = seated(&bench, "2", &data);
     let ended = running.finish();
-    // Its processes do not know the progress of their commands, and report it; the job ends in order.
+    // The restarted processes report that they do not know the progress of their commands. The job ends in order.
     assert_eq!(ended.status, Some(1), "{}", ended.said);
     assert!(ended.last_words().contains(Reason::Restarted.text()), "{}", ended.said);
     for child in boards.into_values().chain([successor]) {

@@ -8,7 +8,7 @@ use whole_system_tests::{Outcome, Scratch, root, run, run_with};
 
 const UNCHECKED: &[&str] = &["--unchecked"]; // the run starts despite errors in the data
 
-/// `prepare` makes a collision; the check before the run would find most of them.
+/// `prepare` causes a collision. The check before the run would find most of them.
 fn run_into(job: &str, name: &str, prepare: impl FnOnce(&Scratch)) -> Outcome {
     let outcome = run_with(job, 1, name, UNCHECKED, prepare);
     assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);
@@ -92,7 +92,7 @@ type Need = (&'static str, &'static str, Option<[&'static str; 2]>);
 
 const NO_MISS: f64 = 0.005; // in: without its entry, such a contact is the nearest miss of the run
 
-/// The end mill goes to the drum with the drill. The guarded insertion fails.
+/// The robot moves the end mill to the drum, which holds the drill. The guarded insertion fails.
 const DRUM_OCCUPIED: &str = "\
 ** drum tool DRILL-2
 ** tray UNIT_2 1 ENDMILL-1 0 0 0

@@ -1,4 +1,4 @@
-//! Tool commands at an occupied or empty drum: the failure is true, nothing is damaged, the remedy works.
+//! Tool commands at an occupied or empty drum: the reported failure is right, nothing is damaged, and the remedy works.
 
 use std::fs;
 
@@ -112,7 +112,7 @@ fn interrupted(ticks: u32) -> String {
 
 #[test]
 fn an_interrupted_insertion_into_an_occupied_drum_never_finishes() {
-    // During the calibration of the sensor, on the way, before the contact, in contact.
+    // The stops are during the calibration of the sensor, in the motion, before the contact, and in contact.
     for ticks in [3, 12, 60, 130, 190, 214] {
         let text = format!("{OCCUPIED}{}{INSERT}\n", interrupted(ticks));
         let outcome = job(&format!("drum-interrupted-{ticks}"), &text);

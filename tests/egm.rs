@@ -56,7 +56,7 @@ fn bad_network_reduces_accuracy_and_fails_no_job() {
     }
 }
 
-/// After 3 ticks and more, a robot at rest is at its commanded position: the link restarts by itself.
+/// After at least 3 ticks, a robot at rest is at its commanded position, so the link restarts by itself.
 #[test]
 fn silence_is_tolerated_below_three_ticks_and_at_rest() {
     for (at, silence, interrupted) in [(MOVES, "0.1", 0), (STANDS, "0.5", 1), (STANDS, "5", 1)] {
@@ -66,7 +66,7 @@ fn silence_is_tolerated_below_three_ticks_and_at_rest() {
     }
 }
 
-/// In a motion the robot stops elsewhere: the operator decides.
+/// During a motion the robot stops elsewhere, so the operator must decide.
 #[test]
 fn a_silence_ends_the_motion_and_the_repeated_command_continues_it() {
     let line = "== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0";

@@ -61,7 +61,7 @@ fn before_the_end_of_the_move(ticks: u64) -> u64 {
 
 #[test]
 fn over_the_vise_the_arm_runs_into_it() {
-    // One second before the blank is in the vise.
+    // The stop is one second before the blank is in the vise.
     let stop = format!("** after {} estop joystick-box\n", before_the_end_of_the_move(25));
     let outcome = job("vise", &BLANK_TO_VISE.replace("{stop}", &stop));
     assert_stopped(&outcome, "the E-stop on the joystick box was pressed");
@@ -83,7 +83,7 @@ fn in_front_of_the_vise_the_arm_sinks_and_keeps_the_part() {
 #[test]
 fn a_sagging_arm_at_home_and_safe_hits_no_body() {
     for place in ["HOME", "SAFE"] {
-        // The stop follows the last command, and still ends the job.
+        // A stop after the last command still ends the job.
         let text = format!("== MOVE -- +0 -- 0 +0 {place} 0 -- 0\n** estop pedestal\n** wait 10\n");
         let outcome = job(place, &text);
         assert_stopped(&outcome, "the E-stop near the pedestal was pressed");

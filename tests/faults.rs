@@ -113,7 +113,7 @@ fn assert_shown_by_console(what: &str, outcome: &Outcome, failure: &FailureResul
     assert_eq!(band.len(), 3, "{what}: the console has no picture of the failure");
     let is_stop = outcome.result["failure"]["kind"] == "emergency-stop";
     let state = if is_stop { "XX E-STOP" } else { "!! FAULT" };
-    // Of a button the band says that it is pressed.
+    // For a button the band states that it is pressed.
     let text = failure.account.first.text.split(" was pressed").next().unwrap_or_default();
     let begin: String = text.chars().take(40).collect();
     assert!(band[0].contains(state) && band[0].contains(&begin), "{what}: {state} {begin:?} in {band:?}");
@@ -248,7 +248,7 @@ fn linkbar_survives_lost_damaged_and_late_answers_and_a_silence() {
             .map(|part| [part["name"].clone(), part["location"].clone(), part["sector"].clone()]);
         places.collect::<Vec<_>>()
     };
-    // Lost, damaged, late by 5 ticks, and silent for 3 s.
+    // The bytes are lost, damaged, late by 5 ticks, or missing for 3 s.
     let faults = [
         "kind = \"drop\"\n",
         "kind = \"flip\"\n",

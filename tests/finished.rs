@@ -22,7 +22,7 @@ fn job(name: &str, text: &str) -> Outcome {
 
 #[test]
 fn part_in_another_sector_has_not_arrived() {
-    // The sectors of the tray are taught again during the run, 5.2 in off.
+    // During the run the sectors of the tray are taught again with an error of 5.2 in.
     let taught = fs::read_to_string(whole_system_tests::root().join("data/movetables.blk"))
         .expect("the movetables can be read");
     let block =
@@ -47,7 +47,7 @@ fn part_in_another_sector_has_not_arrived() {
 
 #[test]
 fn part_that_slipped_in_the_fingers_is_off_its_place() {
-    // Two pounds of grip force yield when the part rubs.
+    // With a grip force of two pounds, friction moves the part in the fingers.
     let outcome = run("linkbar", 1, "finished-force", |scratch| {
         let weak = "-obj-  LINKBAR1         2     0300   0060   2 ";
         scratch.data_with("objects/linkbar.blk", "-obj-  LINKBAR1         2     0300   0060   30", weak);
@@ -57,7 +57,7 @@ fn part_that_slipped_in_the_fingers_is_off_its_place() {
 
 #[test]
 fn tolerances_are_in_the_cell_description() {
-    // The data place the linkbar 0.15 in off.
+    // The data place the linkbar with an error of 0.15 in.
     let outcome = run("linkbar", 1, "finished-near", |scratch| {
         scratch.data_with("cell.toml", "placing_tolerance = 0.25", "placing_tolerance = 0.10");
     });
@@ -66,7 +66,7 @@ fn tolerances_are_in_the_cell_description() {
 
 #[test]
 fn part_pushed_out_of_the_fingers_is_named_with_its_place() {
-    // The jaws push it out of weak fingers. Its final place depends on the seed.
+    // The jaws push the part out of weak fingers. Its final place depends on the seed.
     let job = "** tray UNIT_1 4 LINKBAR1_BH\n\
                ** vise partial PFIXTURE\n\
                == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n\

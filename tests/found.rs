@@ -77,7 +77,7 @@ fn may_unshare(what: &[&str]) -> bool {
     may
 }
 
-/// As with `PrivateTmp=yes` of the shipped unit, or a cleaner of temporary directories.
+/// The same happens with `PrivateTmp=yes` of the shipped unit, or a cleaner of temporary directories.
 #[test]
 fn a_run_with_a_private_and_emptied_tmp_is_found() {
     if !may_unshare(&["--mount"]) {

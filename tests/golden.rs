@@ -2,7 +2,7 @@
 //!
 //! `goldens/scenarios.toml` lists the runs: job, seed, faults, expected end. The program `goldens` makes them and
 //! writes `NAME.golden` with the inputs and the digests of the outputs, and `NAME.txt` for readers. The test `goldens`
-//! replays the inputs and compares both. Other records need new goldens; before, [`crate::trace`] and
+//! replays the inputs and compares both. Changed records need new goldens. First [`crate::trace`] and
 //! [`crate::compare`] show that the new version behaves like the old one.
 
 use std::{
@@ -126,7 +126,7 @@ impl Scenario {
         directory().join(&self.name).with_added_extension("txt")
     }
 
-    /// Runs, without writing the golden. Errors: [`Failed`], for example if the run does not end as expected.
+    /// Runs without writing the golden. Fails with [`Failed`], for example if the run does not end as expected.
     pub fn make(&self) -> Result<Made, Failed> {
         self.made_of(&self.run()?)
     }

@@ -110,7 +110,7 @@ fn another_part_is_not_recognised() {
 #[test]
 fn part_slipping_out_of_the_fingers_is_lost() {
     assert_fails_for("clevis", "slips", Reason::ObjectLost, |scratch| {
-        // Enough for its weight, which `check` requires, but not for the motion.
+        // The force is enough for the weight, which `check` requires, but not for the motion.
         scratch.data_with(
             "cell.toml",
             "friction = 0.30                  # pads on steel",
@@ -173,7 +173,7 @@ fn loaded_blocks_take_effect_with_the_next_command() {
     assert_eq!(outcome.status, Some(0), "{}", outcome.last_words);
     assert_replays(&outcome);
 
-    // Once, and not while Task executes the command during which the blocks were loaded.
+    // The new data take effect once, after the command during which they were loaded.
     let log = Log::open(&outcome.log).expect("the log can be read");
     let ticks = log.ticks().map(|tick| tick.expect("a sound tick"));
     let generations: Vec<(u32, CommonMemory)> = ticks

@@ -93,7 +93,7 @@ fn unrecorded_jog_ends_straight_at_a_resting_place() {
     ]);
     let outcome = job("broken", &(TO_HOME.to_owned() + &hold + TO_HOME));
     assert_at_home(&outcome);
-    // From too far away the command is refused, with the way there.
+    // From too far away the command is refused, and the message states the distance.
     let far = jog(&["frame WORLD", "stick 500 0 20", "hold EMOVE", "stick 1000 0 150", "free EMOVE"]);
     let outcome = job("far", &(TO_HOME.to_owned() + &far + TO_HOME));
     let said = &outcome.last_words;
@@ -126,7 +126,7 @@ fn a_part_in_the_vise_is_released_only_at_its_destination() {
     let begin = "** tray UNIT_1 4 LINKBAR1_BH\n** vise partial PFIXTURE\n\
                  == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n** vise close PFIXTURE\n";
     let away = jog(&["frame WORLD", "stick 0 100 40"]);
-    // The box took over in the first five ticks of this motion.
+    // The joystick box took control in the first five ticks of this motion.
     let back = jog(&["frame WORLD", "stick 0 -100 35"]);
     let position = "== POSITION H-LINKBAR1_BH +1 PFIXTURE 0 +0 -- 0 -- 0\n";
     let again = position.replace('\n', " expect error\n");

@@ -11,7 +11,7 @@ use std::{
 use rustix::process::{Pid, Signal, kill_process};
 use whole_system_tests::{Scratch, rcs_console, rcs_log, rcs_run};
 
-/// Both outputs in one stream, started by its path and not by cargo.
+/// A command that starts a program by its path, not by cargo, with both outputs in one stream.
 fn on_terminal(scratch: &Scratch, line: &str) -> Command {
     let mut shell = Command::new("sh");
     shell.args(["-c", &format!("exec {line} 2>&1")]).current_dir(scratch.file("."));

@@ -83,7 +83,7 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
     })
 }
 
-/// Removed with the run. The name need not be unique: tests run in parallel.
+/// A directory that is removed with the run. Its name need not be unique among parallel tests.
 pub struct Scratch(TempDir);
 
 impl Scratch {
@@ -147,7 +147,7 @@ impl Scratch {
 
 pub const NOBODY: u32 = 65_534; // a user without files, on every system
 
-/// This user may start programs as [`NOBODY`] in a directory.
+/// True if this user may start programs as [`NOBODY`] in a directory.
 #[must_use]
 pub fn may_become_nobody(directory: &Path) -> bool {
     let mut command = Command::new("true");

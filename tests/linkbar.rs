@@ -17,7 +17,7 @@ use record::{
 use whole_system_tests::{Outcome, Scratch, root, run, start};
 
 const SEED: u64 = 1;
-/// Inches from the centre of the sector. The figures of chapter VIII give 0.15: the blank drops onto a ledge.
+/// Greatest distance from the centre of the sector, in. Chapter VIII gives 0.15, because the blank drops onto a ledge.
 const PLACED: f64 = 0.2;
 
 fn linkbar() -> &'static Outcome {
@@ -94,7 +94,7 @@ fn a_killed_run_leaves_a_log_that_replays() {
     let scratch = Scratch::new("killed");
     let mut program = start(&scratch, "linkbar", SEED);
     let log = scratch.file("run.mcap");
-    // Some seconds of the run, which has not ended.
+    // Waits for some seconds of the run, which then has not ended.
     while fs::metadata(&log).map_or(0, |file| file.len()) < 1_000_000 {
         assert!(program.try_wait().unwrap().is_none(), "the run ended before it was killed");
         thread::sleep(Duration::from_millis(5));

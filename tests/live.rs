@@ -404,7 +404,7 @@ fn a_viewer_holds_a_stick_while_it_answers_and_a_delayed_request_is_refused() {
         }
         // Its late request is not executed.
         thread::sleep(Duration::from_secs(3).saturating_sub(hangs.elapsed()));
-        // On a busy machine the run may not have pinged the viewer that early; then the viewer hangs again.
+        // On a busy machine the run may not have pinged the viewer that early; then the viewer must hang again.
         let refused = loop {
             match operated.ask("joystick velocity 1000") {
                 Err(refused) => break refused,
@@ -457,7 +457,7 @@ fn a_view_needs_a_log_and_a_port() {
     assert!(!directory.path().join("log.mcap").exists(), "a run that cannot begin leaves no log");
 }
 
-/// Ctrl-Z, a debugger or a full disk stops the run for longer than a viewer may be silent.
+/// Ctrl-Z, a debugger or a full disk can stop the run for longer than a viewer may be silent.
 #[test]
 fn frozen_run_keeps_its_viewers() {
     let arguments =

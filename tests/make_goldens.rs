@@ -200,7 +200,7 @@ fn stray_trace(directory: &Path, all: &[Scenario]) -> Option<PathBuf> {
     entries.filter(|path| is_trace(path)).find(|path| !known.contains(path))
 }
 
-/// Rows, and entries of the renames, also without a difference.
+/// Prints the rows and the entries of the renames, even without a difference.
 fn print_rows(found: &[(&String, &Comparison)], renames: &Renames, all: bool) {
     let mut rows = RowMap::default();
     found.iter().for_each(|(name, found)| rows.add(name, found));

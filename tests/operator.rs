@@ -171,7 +171,7 @@ fn a_job_is_stopped_commanded_and_finished_and_the_log_gives_the_same_run() {
     let expected = [
         ("PAUSE", "finished"),
         ("SAFE", "interrupted"),
-        // The PAUSE of the job replaces that of the operator, while the robot still comes to rest.
+        // The PAUSE of the job replaces that of the operator, while the robot is still coming to rest.
         ("PAUSE", "interrupted"),
         ("PAUSE", "finished"),
         ("SAFE", "finished"),
@@ -195,7 +195,7 @@ fn operator_restarts_the_robot_after_an_emergency_stop_and_the_job_continues() {
     ask(&mut client, &["release pedestal"]);
     for key in ["fault-reset", "hydraulics enable", "manual on", "align", "auto", "cycle-start"] {
         let begun = Instant::now();
-        // A key is accepted after the effect of the previous one is complete.
+        // A key is accepted only after the effect of the previous key is complete.
         while let Err(why) = client.ask(&format!("panel {key}")).unwrap() {
             assert!(begun.elapsed() < TIME_LIMIT, "{key}: {why}");
             thread::sleep(Duration::from_millis(20));
@@ -441,7 +441,7 @@ fn stand_by_starts_with_wrong_data_and_refuses_only_their_commands() {
     assert!(cell.end().0.result.failure.is_none());
 }
 
-/// IV.1 step 3; the table has calibrated itself before.
+/// IV.1 step 3; the table was already calibrated.
 #[test]
 fn the_rotary_table_is_started_up_at_its_panel() {
     let stand_by = |config| RunConfig { stand_by: true, ..config };
@@ -498,7 +498,7 @@ fn motion_by_hand_ends_with_its_session() {
     wait_for(&mut watcher, "the job waits");
     let run = Attached::open(&cell.name).unwrap();
     let is_free = |shown| shown == (0, (0, 0), 0);
-    // The session remains. On a busy machine it may be silent for too long before.
+    // The session must remain. On a busy machine it may have been silent for too long.
     let mut anna = cell.client("anna");
     let begun = Instant::now();
     loop {

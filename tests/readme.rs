@@ -1,5 +1,5 @@
 //! The `console` blocks of README and tutorials are run as written, one after the other. `...` matches any lines, and
-//! at the end of a line its rest. Numbers that depend on the machine are equal.
+//! at the end of a line its rest. Numbers that depend on the machine are not compared.
 
 use std::{fs, os::unix::fs::symlink, process::Command as Process};
 

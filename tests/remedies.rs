@@ -240,7 +240,7 @@ fn gripper_that_holds_another_object_places_it_first() {
     let job = format!(
         "** tray UNIT_1 3 LCLEVIS_BH 0 0 0\n{TO_VISE}== ACQUIRE LCLEVIS_BH +2 UNIT_1 3 +0 -- 0 -- 0\n"
     );
-    // The check of the paths would find that the held object meets the other one.
+    // The check of the paths would find the collision of the two objects.
     let mut it = Operated::with(&job, "", |config| RunConfig { unchecked: true, ..config });
     it.fails(Reason::AlreadyHolding);
     it.does(&["TRANSFER LINKBAR1_BH +2 UNIT_1 4 +2 UNIT_1 4 -- 0"]).go();
@@ -265,7 +265,7 @@ fn object_held_in_mid_air_is_released_by_hand() {
     it.finishes_without_the_part();
 }
 
-/// V.4.1: "immediately released", in the vise that clamps it.
+/// The object is "immediately released" (V.4.1) in the vise that clamps it.
 #[test]
 fn object_in_a_closed_vise_is_released_by_position() {
     let outcome = Operated::start(&format!("{TO_VISE}** vise close PFIXTURE\n{LEAVE}")).finishes();
@@ -283,7 +283,7 @@ fn object_in_an_open_vise_is_released_after_the_vise_is_closed() {
     assert_eq!(outcome.result.parts[0].location, "PFIXTURE");
 }
 
-/// The operator looks at the vise: the log contains the confirmation.
+/// The operator looks at the vise and confirms. The log contains the confirmation.
 #[test]
 fn object_in_a_vise_is_released_after_a_confirmation() {
     let mut it = Operated::start(&format!("{TO_VISE}{LEAVE}"));
@@ -376,7 +376,7 @@ fn clevis() -> String {
     fs::read_to_string(root().join("data/jobs/clevis.job")).unwrap()
 }
 
-/// Its part is in the pedestal's hand alone, while the table turns; the command is interrupted.
+/// A command is interrupted while only the pedestal's hand holds the part and the table turns.
 fn flipping() -> Operated {
     let mut it = Operated::start(&clevis());
     it.until("the table turns", turns).wait(10).please(&["PAUSE"]).until_it_waits();
@@ -395,7 +395,7 @@ fn part_in_the_pedestal_is_regripped_by_the_command_sent_again() {
     it.finishes();
 }
 
-/// The robot is clear and empty, so it leaves.
+/// The robot is empty and clear of the pedestal, so it moves away.
 #[test]
 fn part_in_the_pedestal_is_released_by_hand() {
     let mut it = flipping();
@@ -457,7 +457,7 @@ fn table_without_a_known_angle_is_calibrated_after_the_part_is_taken_out() {
     it.does(&[HOME]).please(&["pedestal release by hand"]);
     it.until("the hand is open", |memory| !memory.subtask.status.pedestal_part);
     it.please(&["run clevis"]).until_it_waits();
-    // The counter was set again at a wrong angle: the table stops at its limit, and PRE-GRIP calibrates it.
+    // The counter was set at a wrong angle, so the table stops at its limit, and PRE-GRIP calibrates it.
     assert_eq!(it.memory().task.status.reason, Reason::TableStuck);
     it.go();
     it.finishes_without_the_part();

@@ -83,7 +83,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// All tables, including those in comments and in code blocks of a page.
+    /// All tables of a text, including those in comments and in code blocks of a page.
     #[must_use]
     pub fn read(file: &Path, text: &str) -> Vec<Self> {
         let mut tables = Vec::<Self>::new();
@@ -200,7 +200,7 @@ fn conditions(row: &Row) -> String {
     row.conditions.iter().map(condition).collect::<Vec<_>>().join(", ")
 }
 
-/// Appends the conditions from `at` on. Adjacent rows with equal variables so far have the next one in a column.
+/// Appends the conditions from `at` on. Adjacent rows with equal variables so far have their next variable in a column.
 fn align_variables(rows: &[Row], at: usize, texts: &mut [String]) {
     let name = |row: &Row| row.conditions.get(at).map(|(name, _)| name.clone());
     let mut first = 0;

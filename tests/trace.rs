@@ -116,7 +116,7 @@ impl<W: Write> Tracer<W> {
         let mut line = |path: &str, value: &str| writeln!(out, "{tick}\t{path}\t{}", plain(value));
         self.memory.change(memory, "", &mut line)?;
         self.devices.change::<DeviceOutputs>(&memory.device_outputs(), DEVICE, &mut line)?;
-        // `change` has moved the image of this tick to the previous one.
+        // `change` has made the image of this tick the previous one.
         let image = self.memory.was.as_deref().unwrap_or_default();
         for (place, decided) in self.headers.iter().zip(&mut self.decided) {
             let header = place.read(image);
@@ -163,7 +163,7 @@ fn changes(
     }
     match schema {
         Schema::Struct(record) => record_changes(record, path, was, is, visit),
-        // One word: a frame on the line, not 64 numbers.
+        // A frame on the line is written as one word, not as 64 numbers.
         Schema::Array(of, _) if **of == Schema::U8 => visit(path, &hex(is)),
         Schema::Array(of, _) => {
             let size = of.size();
@@ -224,7 +224,7 @@ fn carried_changes(
         return Ok(());
     };
     let same = was.filter(|(before, _)| *before == code);
-    // A value that stands alone is its own text.
+    // A value without parts is written as its own text.
     let alone = |schema: &Schema| !matches!(schema, Schema::Struct(_) | Schema::Option(_) | Schema::Union(_));
     let now = carried(*code);
     if same.is_none() && now.as_ref().is_none_or(|schema| !alone(schema)) {

@@ -1,4 +1,4 @@
-//! A controller and a cell that are two programs: they meet in Modbus TCP, EGM and the mailboxes of vision.
+//! A controller and a cell in two programs, connected by Modbus TCP, EGM and the mailboxes of vision.
 
 use std::{
     fs,
@@ -14,7 +14,7 @@ use serde_json::Value;
 use whole_system_tests::{rcs_cell, rcs_run, root};
 
 const TIME_LIMIT: Duration = Duration::from_secs(60);
-/// A person fills a tray, the vise moves, and the robot goes home.
+/// A person fills a tray, the vise moves, and the robot moves to HOME.
 const JOB: &str = "** tray UNIT_1 4 LINKBAR1_BH\n\
                    ** vise partial PFIXTURE\n\
                    == MOVE -- +0 -- 0 +0 HOME 0 -- 0\n\

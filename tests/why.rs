@@ -1,4 +1,4 @@
-//! `rcs-log why` finds the first cause, the commands before it with rows and sensed values, and the way up the ladder.
+//! `rcs-log why` finds the first cause, the commands before it with rows and sensed values, and the reports.
 
 #![expect(clippy::print_stdout, reason = "its output is for readers")]
 
@@ -114,7 +114,7 @@ fn missing_sensor_condition_is_explained() {
         scratch.data_with("guarded.blk", "HOL-R-SEAT   seated   1", "HOL-R-SEAT   beam     8");
         scratch.job_with("tool-change.job", "== ACQUIRE-TOOL", "== ACQUIRE-TOOL");
     });
-    // E-move fails some ticks after Prim has missed: the chain goes back to that.
+    // E-move fails some ticks after Prim's GO-UNTIL has missed. The chain begins with the missed motion.
     assert_explained(
         &outcome,
         "Prim at tick ",
@@ -177,7 +177,7 @@ fn a_resting_process_fires_no_row() {
     assert_eq!(at(ended - 100), (None, None, None), "the robot moves");
 }
 
-/// It is before all others, and changes their numbers.
+/// The added pose precedes all others, and changes their numbers.
 const ADDED_POSE: &str = "       0    -5022      736
        0    -7145    -1383
     3000    -7145    -1383   -pose-   ...         NEW-POS
@@ -222,7 +222,7 @@ fn missed_grasp_names_the_forms_of_its_object() {
         new.args(["new", "part", "HINGE", "--size", "3x1.5x1", "--like", "LCLEVIS", "--write", "--data"]);
         let output = new.arg(&data).output().expect("rcs-run can be started");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        // The grip is off the half-finished part, so that the fingers close on nothing.
+        // The grip misses the half-finished part, so that the fingers close on nothing.
         let path = data.join("objects/hinge.blk");
         let text = std::fs::read_to_string(&path).expect("the forms are written");
         let missed = text.replacen("1 t 67 49 140 -mtb- HINGE-3", "1 t 67 400 140 -mtb- HINGE-3", 1);

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use clap::{Arg, Command};
 
-/// A section for the program and each subcommand. An argument common to several is described at the first.
+/// A section for the program and each subcommand. An argument of several commands is described once.
 #[must_use]
 pub fn markdown(command: &Command) -> String {
     let mut command = command.clone();
@@ -16,7 +16,7 @@ pub fn markdown(command: &Command) -> String {
     page
 }
 
-/// `described` has the arguments described so far, with their commands.
+/// `described` lists the arguments that are already described, with their commands.
 fn section(command: &Command, depth: usize, described: &mut HashMap<String, String>, page: &mut String) {
     let name = command.get_bin_name().unwrap_or(command.get_name());
     let usage = command.clone().render_usage().to_string();

@@ -40,12 +40,12 @@ const GENERATE: &str = "generate"; // must be first and alone
 const UNITS: &str = "units"; // option and variable
 const UNITS_VARIABLE: &str = "RCS_UNITS";
 
-/// `--generate DIR` writes the pages and ends the process. Units: `--units`, else `RCS_UNITS`.
+/// `--generate DIR` writes the pages and ends the process. `--units` or else `RCS_UNITS` sets the units.
 #[must_use]
 pub fn parse<P: Parser>() -> P {
     let arguments: Vec<_> = env::args_os().map(length_as_value).collect();
     let mut command = command::<P>();
-    // Before the other arguments, which have these units. A wrong value is refused below.
+    // The units are needed to parse the other arguments. A wrong value is refused below.
     match units(&arguments, env::var_os(UNITS_VARIABLE)) {
         Ok(units) => units.show(),
         Err(wrong) => refuse(&command.error(ErrorKind::InvalidValue, wrong)),
@@ -64,7 +64,7 @@ pub fn parse<P: Parser>() -> P {
     let mut matches = command.try_get_matches_from_mut(&arguments).unwrap_or_else(|mut error| {
         let first = arguments.get(1);
         if let Some(near) = misspelt_subcommand(&command, first) {
-            // clap takes the word for a job, which has no further words.
+            // clap parses the misspelt word as a job, and no argument may follow a job.
             if error.kind() == ErrorKind::ArgumentConflict {
                 let word = first.map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
                 error = clap::Error::new(ErrorKind::InvalidSubcommand).with_cmd(&command);
@@ -112,7 +112,7 @@ fn refuse(error: &clap::Error) -> ! {
     process::exit(error.exit_code())
 }
 
-/// Units of the option, the variable, or inches. A wrong option is refused later. Errors: a wrong variable.
+/// Units from the option, else from the variable, else inches. Only a wrong variable is an error here.
 fn units(arguments: &[OsString], variable: Option<OsString>) -> Result<Units, String> {
     let texts = || arguments.iter().skip(1).map(|argument| argument.to_str().unwrap_or_default());
     let option = format!("--{UNITS}");
@@ -138,12 +138,12 @@ fn length_as_value(argument: OsString) -> OsString {
     }
 }
 
-/// Inches, from a text in the units of the command line. Errors: what was expected.
+/// Parses a length in the units of the command line; returns inches. The error states the expected form.
 pub fn length(text: &str) -> Result<f64, String> {
     Units::of_process().length(text)
 }
 
-/// The subcommand that was probably meant: a program that runs a job takes a misspelt one for the job.
+/// The subcommand that was probably meant: clap parses a misspelt one as a job.
 fn misspelt_subcommand<'c>(command: &'c Command, first: Option<&OsString>) -> Option<&'c str> {
     let first = first?.to_str()?;
     let names = || command.get_subcommands().map(Command::get_name);

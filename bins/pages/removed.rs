@@ -15,7 +15,7 @@ pub struct RemovedTls {
     zenoh_config: Option<Infallible>,
 }
 
-/// What to use instead of keys and of Zenoh in the controller.
+/// The replacement for keys and for Zenoh in the controller.
 pub const KEYS_MOVED: &str = "connections to other machines have moved into rcs-gateway, which takes --keys; \
                               tools/keys.sh makes the keys (docs/several-machines.md)";
 

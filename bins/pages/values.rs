@@ -1,4 +1,4 @@
-//! Values that name data. Completions offer the names of the default directory; others are valid too.
+//! Values that name data. Completions offer the names of the default directory; the arguments accept other names, too.
 
 use std::{
     ffi::OsStr,

@@ -66,7 +66,7 @@ impl Rules {
         self.allow(to_gateway, &["declare_liveliness_subscriber", "liveliness_query"], cell.alive(ANY));
     }
 
-    /// A reader may ask for the status of all cells at once, and gets that of `cell`, which may be [`ANY`].
+    /// A reader may ask for the status of all cells at once. It gets that of `cell`, which may be [`ANY`].
     fn status(&mut self, cell: &CellKeys, to_reader: Flow) {
         let (every, from_reader) = (CellKeys::of(ANY), to_reader.reverse());
         self.allow(from_reader, &["declare_subscriber"], every.status());
@@ -119,7 +119,7 @@ fn common(mode: &str, keys: &Keys, access_control: &Value) -> Result<Config, zen
                 "connect_private_key": keys.key,
                 "connect_certificate": keys.certificate,
                 "enable_mtls": true,
-                // Zenoh also trusts the public authorities when it connects: the name is what keeps those out.
+                // Zenoh also trusts public authorities when it connects, so only the name excludes their certificates.
                 "verify_name_on_connect": true,
                 "close_link_on_expiration": true,
             }),
@@ -156,7 +156,7 @@ pub fn gateway(
         }
     }
     let mut config = common("peer", keys, &access_control(&certificates))?;
-    // Nobody is scouted, so there is nothing to wait for.
+    // Scouting is off, so opening need not wait for it.
     config.insert_json5("open/return_conditions/connect_scouted", "false")?;
     listen(&mut config, endpoint)?;
     let routers: Vec<_> = router.iter().map(ToString::to_string).collect();
@@ -203,7 +203,7 @@ pub fn router(
 pub fn monitor(endpoints: &[Endpoint], keys: &Keys) -> Result<Config, zenoh::Error> {
     let is_client = endpoints.len() == 1;
     let mode = if is_client { "client" } else { "peer" };
-    // A monitor declares nothing that others could read.
+    // Access control is off, because a monitor publishes nothing.
     let mut config = common(mode, keys, &json!({ "enabled": false }))?;
     config.insert_json5("open/return_conditions/connect_scouted", "false")?;
     config.insert_json5("listen/endpoints", "[]")?;
@@ -222,7 +222,7 @@ pub fn neighbour(cell: &Name, endpoint: Endpoint, role: Role, keys: &Keys) -> Re
     config.insert_json5("listen/endpoints", "[]")?;
     config.insert_json5("connect/endpoints", &json!([endpoint.to_string()]).to_string())?;
     config.insert_json5("connect/exit_on_failure", "true")?;
-    // Without a retry the error says what is wrong; the program at the socket tries again.
+    // Without a retry the error states the cause. The program at the socket tries again.
     config.insert_json5("connect/timeout_ms", "0")?;
     Ok(config)
 }

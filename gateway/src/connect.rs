@@ -1,7 +1,7 @@
 //! `rcs-gateway connect`: the other end of a claim, beside a neighbour or an operator.
 //!
-//! It listens at a Unix socket. Each program that connects there gets a Zenoh session and a claim of its own, so
-//! nothing of a former connection is left when the next one begins.
+//! It listens at a Unix socket. Each program that connects there gets its own Zenoh session and claim, so that nothing
+//! of an earlier connection is left.
 
 use std::{
     io,
@@ -73,7 +73,7 @@ pub fn connect(arguments: &ConnectArguments) -> Result<(), Error> {
         _ => Error::Socket { address: socket.clone(), source },
     })?;
     say!("{role} of {cell} as {}: waits for a program at {socket}", near.keys.name);
-    // A first attempt, so that wrong keys and addresses are reported at once.
+    // The first attempt reports wrong keys and addresses at once.
     if let Err(refusal) = near.open_session() {
         say!("{refusal}; the next program at {socket} tries again");
     }
@@ -120,7 +120,7 @@ impl Neighbourhood {
         let role = self.role;
         let session = match self.open_session() {
             Ok(session) => session,
-            // Without a word: the program tries again, as if no run listened.
+            // The program gets no reason, so it tries again, as if no run listened.
             Err(refusal) => return say!("{refusal}"),
         };
         let end = match self.claim(&session) {
@@ -260,7 +260,7 @@ fn close(line: &mut Line, session: &mut LineSession) {
     line.drain(until);
 }
 
-/// Send a sample. One that cannot be sent is lost, as one on the way.
+/// Send a sample. A sample that cannot be sent is lost, like one lost in transit.
 fn put(publisher: &Publisher<'_>, sample: Vec<u8>) {
     let _ = publisher.put(sample).wait();
 }

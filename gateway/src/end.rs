@@ -3,7 +3,7 @@
 use std::{fmt, time::Duration};
 
 pub const CLOSING: Duration = Duration::from_secs(1); // how long the end of a connection may take
-/// How long a claim waits for the last sample after the token of the other side has gone.
+/// Time for which a claim waits for the last sample after the token of the other side has disappeared.
 pub const GRACE: Duration = Duration::from_millis(100);
 
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! What the network has delivered for a claim. Zenoh's threads fill it and never wait; the claim's thread empties it.
+//! The received payloads of a claim. Zenoh's threads fill it and never wait; the claim's thread empties it.
 
 use std::{
     collections::VecDeque,
@@ -31,7 +31,7 @@ pub struct Inbox {
 }
 
 impl Inbox {
-    /// For samples, of which only the latest counts (`is_state`), or for lines, which wait in order.
+    /// With `is_state` only the latest payload is kept, as for samples. Otherwise payloads wait in order, as lines do.
     pub fn new(is_state: bool) -> io::Result<Self> {
         let wake = eventfd(0, EventfdFlags::CLOEXEC | EventfdFlags::NONBLOCK)?;
         Ok(Self { is_state, contents: Mutex::default(), wake, is_stopped: AtomicBool::new(false) })
@@ -42,7 +42,7 @@ impl Inbox {
     }
 
     fn wake(&self) {
-        // It fails only if the counter is full, and then the thread wakes anyway.
+        // The write fails only if the counter is full, and then the thread wakes anyway.
         let _ = rustix::io::write(&self.wake, &1_u64.to_ne_bytes());
     }
 
@@ -90,7 +90,7 @@ impl Inbox {
 
     #[must_use]
     pub fn take(&self) -> Option<Vec<u8>> {
-        // It fails if nothing has woken the thread.
+        // The read fails if nothing has woken the thread.
         let _ = rustix::io::read(&self.wake, &mut [0; 8]);
         let mut contents = self.contents();
         let payload = contents.payloads.pop_front()?;

@@ -15,7 +15,7 @@ use x509_parser::prelude::{FromDer as _, Pem, X509Certificate};
 use crate::address::Name;
 
 const AUTHORITY: &str = "ca.pem"; // certificates of the trusted authority
-/// Name of the authority's private key without its extension: not that of a gateway or a neighbour.
+/// Name of the authority's private key without its extension. No gateway or neighbour may use it.
 const AUTHORITY_KEY: &str = "ca";
 const OTHERS: u32 = 0o077; // mode bits of access for others than the owner
 

@@ -19,11 +19,11 @@ use crate::{
 const LONGEST: usize = 1024;
 const NAME: usize = 24; // greatest length of an operator's name, bytes
 const HELLO: &str = "hello ";
-/// An operator that sends nothing for this time loses its claim, so that another one can command.
+/// An operator that sends nothing for this time loses its claim, so that another operator can command.
 const SILENCE: Duration = Duration::from_secs(10);
 
-/// Moves lines until the claim ends. `unread` are bytes of the socket that were received already; at the gateway `name`
-/// is put before the operator's, and an operator that is silent for 10 s loses its claim.
+/// Moves lines until the claim ends. `unread` are bytes that were already received from the socket. At the gateway,
+/// `name` precedes the operator's name, and an operator that is silent for 10 s loses its claim.
 pub fn relay(
     mut line: Line,
     mut unread: Vec<u8>,

@@ -1,5 +1,5 @@
-//! Messages on standard error, which no flood of connections can fill: each source has a limited rate, and the next
-//! line says how many were left out.
+//! Messages on standard error, which no flood of connections can fill: each source has a limited rate, and its next
+//! line states how many were omitted.
 
 use std::{
     fmt::{self, Write as _},
@@ -85,7 +85,7 @@ impl Subscriber for Warnings {
         if text.0.starts_with("Gossip is disabled") {
             return;
         }
-        // Zenoh explains every failed handshake by the limit of open files.
+        // Zenoh attributes every failed handshake to the limit of open files, so that text is removed.
         let text = without_places(&text.0.replace(". Hint: increase the system open file limit.", ""));
         write(Source::Zenoh, &text);
     }
@@ -96,6 +96,6 @@ impl Subscriber for Warnings {
 }
 
 pub fn hear_zenoh() {
-    // It fails only if another subscriber was set before, and this program sets one.
+    // This fails only if a subscriber is already set, and this program sets only this one.
     let _ = tracing::subscriber::set_global_default(Warnings);
 }

@@ -37,7 +37,7 @@ use os_io::stderr_line;
 
 use crate::cli::{Cli, Command};
 
-/// Unless compiled with this variable, Zenoh lets nobody connect for 100 ms after each failed handshake.
+/// Unless compiled with this variable, Zenoh accepts no connection for 100 ms after each failed handshake.
 const _: () = assert!(
     matches!(option_env!("TLS_ACCEPT_THROTTLE_TIME"), Some(time) if matches!(time.as_bytes(), b"0")),
     "build inside the repository, so that cargo reads .cargo/config.toml: it sets TLS_ACCEPT_THROTTLE_TIME=0"

@@ -98,7 +98,7 @@ pub fn monitor(arguments: &MonitorArguments) -> Result<(), Error> {
     let tokens = liveliness.declare_subscriber(every.alive(ANY)).history(true).callback(token);
     tokens.background().wait().map_err(Error::zenoh)?;
     let status = move |sample: Sample| {
-        // Other payloads than JSON are ignored.
+        // Payloads that are not JSON are ignored.
         if let Ok(status) = serde_json::from_slice(&sample.payload().to_bytes()) {
             change(&states, &sample, |cell| cell.status = status);
         }

@@ -15,8 +15,8 @@ const SHORTEST: Duration = Duration::from_millis(100);
 const LONGEST: Duration = Duration::from_secs(2);
 /// Refusals expire after this time without a request.
 const FORGOTTEN: Duration = Duration::from_secs(10);
-/// Greatest number of requests of one certificate that wait for the run. The last of them waits for four of the longest
-/// pauses, which is less than the 12 s for which a client waits.
+/// Greatest number of requests of one certificate that wait for the run. The last one waits for four of the longest
+/// pauses, less than the 12 s for which a client waits.
 const WAITING: u32 = 4;
 
 #[derive(Clone, Copy, Debug)]

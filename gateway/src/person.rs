@@ -8,7 +8,7 @@ use crate::{
     page::people::{self, People},
 };
 
-/// Carries out a command. Fails if the file cannot be used, or the person is there already or is missing.
+/// Carries out a command. Fails if the file cannot be used, or the person already exists or is missing.
 pub fn run(command: &PersonCommand) -> Result<(), Error> {
     let text = match command {
         PersonCommand::Add { name, role, people } => {

@@ -1,5 +1,5 @@
-//! The answer to a request for a claim, as text: `real` or `fast`, the clock of the run; or, as an error, `refused
-//! TEXT` in the words of the run, or `absent TEXT` if there is no run: a later request may succeed.
+//! The answer to a request for a claim, as text. It is `real` or `fast`, the clock of the run. As an error it is
+//! `refused TEXT` with the run's reason, or `absent TEXT` without a run: a later request may succeed.
 
 use std::fmt;
 
@@ -45,7 +45,7 @@ impl Refusal {
         }
     }
 
-    /// From the bytes of an answer; `None` if they are none of a gateway, as when Zenoh reports that time is up.
+    /// The refusal in an answer; `None` if the answer is not a gateway's, such as Zenoh's report of a timeout.
     #[must_use]
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let text = plain(bytes);

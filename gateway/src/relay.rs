@@ -26,7 +26,7 @@ use crate::{
     sample::State,
 };
 
-/// In fast clock the run waits for the answer to each pulse: a sample without one is repeated after this time.
+/// In fast clock the run waits for the answer to each pulse. A sample without an answer is repeated after this time.
 const REPEAT: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,7 +105,7 @@ impl<'a> Relay<'a> {
     }
 
     fn turn(&mut self) -> Result<(), End> {
-        // A socket that is read slowly gets the latest values only.
+        // A socket that is read slowly gets only the latest values.
         if self.line.is_flushed() {
             self.take_sample(Instant::now())?;
         }
@@ -130,7 +130,7 @@ impl<'a> Relay<'a> {
         }
         match next.pulse {
             Some(pulse) if self.passed.pulse != Some(pulse) => self.session.pulse(pulse, now),
-            // The run repeats a pulse: the answer was lost.
+            // The run repeats a pulse because the answer was lost.
             Some(pulse) if self.side == Side::Neighbour && self.outgoing.pulse == Some(pulse) => {
                 self.send(now)
             }

@@ -1,5 +1,5 @@
-//! `rcs-gateway router`: passes the status of several cells on to monitors. Any stock router of Zenoh can do that, too;
-//! this one lets each cell write its own status only.
+//! `rcs-gateway router`: passes the status of several cells on to monitors. Any Zenoh router can do that. This router
+//! also restricts each cell to its own status.
 
 use zenoh::Wait as _;
 

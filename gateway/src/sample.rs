@@ -1,7 +1,7 @@
 //! A sample: all mailboxes of one direction, the last pulse, and at the end of a claim its reason. The bytes are the
 //! frames of docs/neighbours.md "On the line".
 //!
-//! A sample is a state and not a change: the next one replaces one that was lost.
+//! A sample is a state, not a change, so the next sample replaces a lost one.
 
 use neighbours::{
     line::frame::{self, DISCONNECT, Frame, FrameError},
@@ -41,7 +41,7 @@ impl State {
         &self.mailboxes
     }
 
-    /// Store a mailbox. Fails if its bytes do not fit the mailbox, or it is not one of this direction.
+    /// Store a mailbox. Fails if its bytes do not fit the mailbox, or the mailbox has the other direction.
     pub fn receive(&mut self, address: u32, used: &[u8]) -> Result<(), SampleError> {
         let mailbox = self.mailboxes.iter_mut().find(|mailbox| mailbox.place().address == address);
         let mailbox = mailbox.ok_or(FrameError::Address { expected: self.places, found: address })?;
@@ -130,7 +130,7 @@ mod tests {
         for at in 0..bytes.len() {
             let mut wrong = bytes.clone();
             wrong[at] ^= 0xFF;
-            // No panic; a changed byte in data is still a sample.
+            // Decoding must not panic. A sample with a changed byte in its data is still valid.
             let _ = state.decode(&wrong);
         }
     }

@@ -103,7 +103,7 @@ pub fn serve(arguments: &ServeArguments) -> Result<(), Error> {
 }
 
 impl Gateway {
-    /// Take requests for claims of a role by a certificate. Zenoh's thread only passes them on.
+    /// Receive a certificate's requests for claims of a role. Zenoh's thread only passes them on.
     fn listen(&self, role: Role, name: &Name, requests: SyncSender<Request>) -> Result<(), zenoh::Error> {
         let owner = name.clone();
         let take = move |query: Query| {
@@ -229,7 +229,7 @@ impl Gateway {
         let end = if role == Role::Operator {
             let unread = admitted.session.take_unread();
             lines::relay(admitted.line, unread, Some(name), &inbox, &mut |bytes| {
-                // A sample that cannot be sent is lost, as one on the way.
+                // A sample that cannot be sent is lost, like one lost in transit.
                 let _ = publisher.put(bytes).wait();
             })
         } else {
@@ -248,6 +248,6 @@ impl Gateway {
 fn refuse(request: &Request, refusal: &Refusal) {
     let Request { role, name, query } = request;
     say_refused!("{role} {name} was refused: {refusal}");
-    // A neighbour that does not get the answer gives up by itself.
+    // A neighbour that does not get the answer times out.
     let _ = query.reply_err(refusal.encode()).wait();
 }

@@ -1,7 +1,7 @@
-//! What monitors read: `status/run` five times a second, and the image of each mailbox whenever it changes.
+//! The data for monitors: `status/run` five times a second, and the image of each mailbox whenever it changes.
 //!
-//! The source is the mailboxes that pass through this gateway, at no cost for the run: `status/run` has the state of
-//! Task while a workstation controller is connected through this gateway.
+//! The source is the mailboxes that pass through this gateway, so the run is not involved. `status/run` has the state
+//! of Task while a workstation controller is connected through this gateway.
 
 use std::{
     collections::BTreeMap,
@@ -53,7 +53,7 @@ impl Board {
             .wait()?;
         let (asked, path, key) = (Arc::clone(&known), run.clone(), cell.run());
         let answer = move |query: Query| {
-            // The key of the query may be that of all cells. A monitor without an answer has disconnected.
+            // The key of the query may match all cells. If the reply fails, the monitor has disconnected.
             let _ = query.reply(&key, lock(&asked).describe(is_socket(&path))).wait();
         };
         session.declare_queryable(cell.run()).callback(answer).background().wait()?;
@@ -61,7 +61,7 @@ impl Board {
         thread::spawn(move || {
             while let Some(known) = weak.upgrade() {
                 let text = lock(&known).describe(is_socket(&path));
-                // The next one follows in a moment.
+                // The next status follows soon.
                 let _ = publisher.put(text).wait();
                 drop(known);
                 thread::sleep(PERIOD);
@@ -80,7 +80,7 @@ impl Board {
         lock(&self.known).roles.insert(role.text(), name.to_owned());
     }
 
-    /// A role is no longer connected: its mailboxes are unknown.
+    /// A role is no longer connected, so its mailboxes become unknown.
     pub fn disconnected(&self, role: Role) {
         let mut known = lock(&self.known);
         known.roles.remove(role.text());
@@ -107,7 +107,7 @@ impl Board {
         }
         for (address, image) in changed {
             let put = self.session.put(self.cell.mailbox(address), image);
-            // A monitor gets the next change.
+            // If this fails, the monitor gets the next change.
             let _ = put.priority(Priority::DataLow).congestion_control(CongestionControl::Drop).wait();
         }
     }

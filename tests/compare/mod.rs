@@ -59,7 +59,7 @@ pub struct Comparison {
     used: BTreeSet<Rule>,
 }
 
-/// Errors: [`CompareError`] if one of them is not a complete trace, or two old fields become one.
+/// Fails with [`CompareError`] if a trace is incomplete, or two old fields become one.
 pub fn compare(was: impl BufRead, is: impl BufRead, renames: &Renames) -> Result<Comparison, CompareError> {
     let (mut was, mut is) = (Lines::new("old", was)?, Lines::new("new", is)?);
     let mut comparer = Comparer::new(renames);
@@ -195,14 +195,14 @@ impl<'a> Comparer<'a> {
 
     fn settle(&mut self, moment: Moment) {
         let mut touched = std::mem::take(&mut self.touched);
-        // Differences first: they end the collection of rows.
+        // Differences are handled first, because they end the collection of rows.
         touched.sort_by_key(|at| (matches!(self.slots[*at].kind, Kind::Row(_)), *at));
         for at in touched.drain(..) {
             let slot = &mut self.slots[at];
             slot.touched = false;
             match (&slot.kind, &slot.was, &slot.is) {
                 (Kind::Row(_), Some(_), Some(_)) => {}
-                // A process of only one version, or a field that was not declared as added.
+                // These are a process of only one version, or a field that was not declared as added.
                 (Kind::Row(_), ..) | (Kind::Added, Some(_), _) => slot.kind = Kind::COMPARED,
                 _ => {}
             }

@@ -6,7 +6,7 @@ use std::{
 use super::CompareError;
 use crate::trace::{END, TICKS};
 
-/// A tick, or the end, which is after all ticks.
+/// A tick, or the end, which follows all ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Moment {
     Tick(u64),

@@ -49,7 +49,7 @@ impl Controller {
         let mut child = Command::new(rcs_run())
             .args(["--network", address.unwrap_or(&socket)])
             .args((!outside.is_empty()).then(|| format!("--outside={outside}")))
-            // An operator can reach a run with a name.
+            // An operator can connect only to a run with a name.
             .args(if more.contains(&"--run") { &[][..] } else { &["--shared-memory", "off"] })
             .args(if more.contains(&"--log") { &[][..] } else { &["--log", "none"] })
             .args(more)

@@ -167,7 +167,7 @@ const BY_HAND: [&str; 6] = [
     "panel cycle-start",
 ];
 
-/// After a replaced command the robot continues from there, or the operator brings it to HOME.
+/// After a replaced command the robot continues from its position, or the operator moves it to HOME.
 #[test]
 fn a_robot_stopped_on_its_way_continues_or_is_moved_back_by_hand() {
     let (controller, mut workstation) = start_moving("by-hand");

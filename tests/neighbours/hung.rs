@@ -10,7 +10,7 @@ use super::bench::{Controller, Workstation, bare};
 
 const TOLD: &str = "the controller says: no answer for 10 s"; // the last message to a hung neighbour
 
-/// Reads like the system for a stopped program. Returns the last message.
+/// Reads bytes without answering, as the system does for a stopped program. Returns the last message.
 fn hang(mut peer: Peer) -> String {
     loop {
         if let Err(error) = peer.receive() {
@@ -39,7 +39,7 @@ fn hung_neighbour_is_disconnected_without_stopping_the_robot() {
     for (role, told) in HUNG.into_iter().zip(hung) {
         assert_eq!(told.join().expect("it has not panicked"), TOLD, "{role}");
     }
-    // The page shows only the first events: all three must be noted first.
+    // The page shows only the first events, so all three must be recorded before.
     (0..5).for_each(|_| workstation.tick());
     for role in HUNG {
         drop(controller.connect(role));

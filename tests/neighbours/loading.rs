@@ -103,7 +103,7 @@ fn block_loaded_by_the_workstation_takes_effect_with_the_next_command() {
     // Several boards check the block; the run in fast clock waits for them.
     let split = Cell::new("split").play(&["--boards", "split"], load_and_move);
     assert_eq!((split.digest, split.lines), (loaded.digest.clone(), loaded.lines.clone()));
-    // The text comes from the log: the file here does not contain it.
+    // The repetition reads the text from the log, because the present file does not contain it.
     let log = loaded.scratch.file("run.mcap").display().to_string();
     let again = Cell::new("again").play(&["--inputs", &log], |_, workstation| {
         finishes(workstation, &bare(1, "PAUSE"));
@@ -148,7 +148,7 @@ fn a_refused_load_keeps_the_old_data() {
     // Invalid loads are refused like other lines for the cell.
     let logged: Vec<_> = refused.lines.iter().map(|line| line.refused.is_some()).collect();
     assert_eq!(logged, [true; 3]);
-    // A repetition refuses what the log says, although the text is valid by now.
+    // A repetition refuses the loads that the log refuses, although the text is now valid.
     let log = refused.scratch.file("run.mcap").display().to_string();
     let again = Cell::new("refused-again").play(&["--inputs", &log], |cell, workstation| {
         play(cell, workstation, HIGHER, &lines[..3]);
@@ -171,7 +171,7 @@ fn no_block_is_loaded_during_a_command() {
     });
 }
 
-/// The block is checked in parallel with the ticks; the cell is busy meanwhile.
+/// The block is checked in parallel with the ticks. Meanwhile the cell is busy.
 #[test]
 fn on_the_grid_a_load_is_answered_later() {
     for boards in ["one", "split"] {

@@ -1,5 +1,5 @@
-//! Neighbours in other processes: the commanding one can be replaced, and no other commands the robot. Nearly all
-//! tests run in fast clock, where the tick waits, so that the machine's speed has no effect.
+//! Neighbours in other processes. The commanding neighbour can be replaced, and no other one commands the robot. Nearly
+//! all tests run in fast clock, where the tick waits, so that the machine's speed has no effect.
 
 mod bench;
 mod data_system;

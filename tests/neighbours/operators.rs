@@ -41,7 +41,7 @@ impl Cell {
         let [log_text, job_text] = paths.each_ref().map(String::as_str);
         let more = [
             &["--clock", "5x", "--operator", access][..],
-            // Without an operator a stand-by would not end.
+            // A stand-by would not end without an operator.
             if access == "none" { &[] } else { &["--stand-by"] },
             &["--run", name.as_str(), "--log", log_text, job_text],
         ];

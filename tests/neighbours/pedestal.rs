@@ -1,6 +1,6 @@
-//! The Active Pedestal in another process (VI.7, IX.3) changes no bit of a run. After any failure of it, robot and
-//! hand keep their parts, and the command ends with a message that names it. In fast clock the controller's time stops
-//! while the test, its workstation controller, does not answer.
+//! The Active Pedestal in another process (VI.7, IX.3) changes no bit of a run. After any failure of the pedestal,
+//! robot and hand keep their parts, and the command ends with a message that names the pedestal. In fast clock the
+//! controller's time stops while the test, its workstation controller, does not answer.
 
 use std::{
     io::{BufRead as _, BufReader},
@@ -223,7 +223,7 @@ fn start_pedestal(program: &Path, controller: &Controller) -> (Child, Arc<Atomic
 
 #[test]
 fn external_pedestal_changes_no_bit() {
-    // Rebuilt before the controller waits for it.
+    // The program is rebuilt before the controller waits for it.
     let (program, alone) = (rcs_neighbour(), computed_alone("clevis", &[]));
     for boards in ["one", "split"] {
         let scratch = Scratch::new(&format!("turned-log-{boards}"));

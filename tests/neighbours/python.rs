@@ -79,7 +79,7 @@ fn hwsc_py_transfers_a_part() {
     assert_eq!(ended.result["parts"][0]["location"], "PFIXTURE", "{}", ended.said);
 }
 
-/// It shares only the byte format with the other vision system.
+/// This vision system shares only the byte format with the other one.
 #[test]
 fn vision_py_locates_a_part() {
     if !has_python() {

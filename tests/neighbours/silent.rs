@@ -116,7 +116,7 @@ fn waiting_run_ends_on_request() {
     }
 }
 
-/// Gives its first command this answer, or none, and all others correct ones. Returns its received commands.
+/// Gives the first command this answer or none, and correct answers to all others. Returns the received commands.
 fn connect_after(first: Option<&'static [u8]>) -> (Ended, Receiver<Vec<u8>>) {
     let (tell, heard) = channel();
     let (controller, mut workstation, data_system) = start("real", move |mut peer| {

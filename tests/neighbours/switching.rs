@@ -50,7 +50,7 @@ fn the_workstation_commands_between_lines_of_the_job() {
     assert_eq!(next(&mut first, "MOVE", "SAFE"), "MOVE SAFE: finished");
     let last = first.status().echo;
     drop(first);
-    // It waits until the job hands over, and has missed the numbers of PAUSE, MOVE, MOVE and PAUSE.
+    // The second controller waits for its turn, and has missed the numbers of PAUSE, MOVE, MOVE and PAUSE.
     let mut second = Workstation::connect(&controller);
     assert_eq!(second.status().echo, last + 4, "one sequence of numbers");
     assert_eq!(next(&mut second, "PAUSE", ""), "PAUSE : finished");

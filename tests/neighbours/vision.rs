@@ -158,7 +158,7 @@ fn a_run_without_its_vision_warns_and_starts() {
     );
 }
 
-/// It would recognise none of the cell's parts.
+/// This vision system would recognise none of the cell's parts.
 #[test]
 fn vision_with_another_cell_description_ends_with_the_reason() {
     let scratch = Scratch::new("another-cell");

@@ -213,7 +213,7 @@ fn a_reconnected_workstation_controller_continues_from_the_echo() {
     let mut second = Workstation::connect(&controller);
     assert!(second.tick > last, "the ticks continued");
     assert_eq!((second.status().echo, second.status().verdict), (1, 0));
-    // One that has lost its state starts with number 1 again.
+    // A workstation controller that has lost its state starts with number 1 again.
     second.send(&HwsCommand { source_sector: Some(1), ..bare(1, "PAUSE") });
     while second.status().verdict == 0 {
         second.tick();

@@ -4,7 +4,7 @@ use whole_system_tests::root;
 
 use super::{pages, prose};
 
-/// Runs and builds make other directories.
+/// Only these directories are tracked, because runs and builds make others.
 const TRACKED: [&str; 12] = [
     "benches", "bins", "crates", "data", "docs", "examples", "fuzz", "gateway", "python", "tests", "tools",
     "viewers",

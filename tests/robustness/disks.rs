@@ -9,7 +9,7 @@ use crate::{
 
 const TICKS: u64 = 400;
 
-/// Name, shell commands with `SIZE` kilobytes before the run, and largest size to try.
+/// Name, shell commands that set the limit of `SIZE` kilobytes before the run, and largest size to try.
 const LIMITS: [(&str, &str, u64); 3] = [
     ("a limit of N KB on files", "ulimit -f $((2 * SIZE))", 2_000), // the shell uses blocks of 512 bytes
     ("a disk of N KB for the log", "mkdir disk && mount -t tmpfs -o size=SIZEk tmpfs disk", 600),

@@ -22,7 +22,7 @@ use crate::{
 const TICKS: &str = "100"; // of an attacked run
 const STARTS: Duration = Duration::from_secs(2); // a run has begun
 
-/// The objects that iceoryx2 needs to find values; garbage in its lists of nodes and ports ends a program.
+/// The objects in which iceoryx2 finds values. Garbage in its lists of nodes and ports would end a program.
 fn values(run: &RunName) -> Vec<PathBuf> {
     let is_value = |path: &PathBuf| path.to_string_lossy().contains("blackboard_");
     traces(run).into_iter().filter(|path| path.is_file() && is_value(path)).collect()
@@ -86,7 +86,7 @@ fn garbage_in_values(directory: &Path, boards: &str, expected: &str, chance: &mu
     judge_damaged(&ended)
 }
 
-/// During the run, or after it was killed.
+/// Damages any object, during the run or after it was killed.
 fn damage_anywhere(directory: &Path, boards: &str, chance: &mut Chance) -> Outcome {
     let mut run = start(directory, boards, TICKS, "none");
     drop(run.attach());
@@ -132,7 +132,7 @@ fn stale(directory: &Path, boards: &str, chance: &mut Chance) -> Outcome {
     Outcome::BySignal
 }
 
-/// The files of a starting run, until its first tick or its end.
+/// Damages the files of a starting run, until its first tick or its end.
 fn damage_while_it_starts(directory: &Path, boards: &str, chance: &mut Chance) -> Outcome {
     let mut run = start(directory, boards, "30", "none");
     let name = run.name.clone();

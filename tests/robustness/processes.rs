@@ -1,4 +1,4 @@
-//! Attacking processes: this program again, so that they can be killed, stopped, or belong to another user.
+//! Attacking processes: this program starts itself, so that they can be killed, stopped, or belong to another user.
 
 use std::{
     env, fs,

@@ -44,7 +44,7 @@ pub fn judge(ended: &Ended) -> Outcome {
     }
 }
 
-/// iceoryx2 may panic over garbage: the set-up ends with a message, later phases and destructors panic.
+/// With garbage, the set-up must end with a message. In later phases and destructors iceoryx2 may panic.
 pub fn judge_damaged(ended: &Ended) -> Outcome {
     let mut panics = ended.said.lines().filter(|line| line.contains("panicked at"));
     let Some(first) = panics.next() else { return judge(ended) };

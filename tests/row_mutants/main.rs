@@ -7,11 +7,11 @@
 //! cargo run --release -p whole-system-tests --bin row-mutants -- --own --only levels/src/grip
 //! ```
 //!
-//! The order of the changes of [`mutate`] depends on the seed. One that does not compile is counted apart: the table
-//! is not total, has a dead row, or names do not match. One that compiles is *killed* if a test fails or does not end,
-//! else it has *survived*, and is printed as a difference. All changes are compiled at once ([`switch`]) in a copy,
-//! `target/row-mutants/source`. Each test is run once to find the changes that it can detect. Then these tests are run
-//! with each change, the quickest first, with fewer random cases, until one fails.
+//! The order of the changes of [`mutate`] depends on the seed. A change that does not compile is counted separately:
+//! the table is not total, has a dead row, or names do not match. A change that compiles is *killed* if a test fails or
+//! does not end. Otherwise it has *survived*, and is printed as a difference. All changes are compiled at once
+//! ([`switch`]) in a copy, `target/row-mutants/source`. Each test is run once to find the changes that it can detect.
+//! Then these tests are run with each change, the quickest first, with fewer random cases, until one fails.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program of the developers, at a terminal")]
 

@@ -95,7 +95,7 @@ pub fn mutants(table: &Table) -> Vec<Mutant> {
             mutants.push(mutant(table, row, What::Action, &changed, None));
         }
         let steps = table.steps.iter().cloned().map(Some).chain([None]).filter(|next| {
-            // Naming the only step as the next one has no effect.
+            // A change that names the only step as the next one has no effect.
             let stay = |next: &Option<String>| next.is_none() || *next == row.only_step;
             *next != row.next && !(stay(next) && stay(&row.next))
         });
@@ -137,7 +137,7 @@ fn random(state: &mut u64) -> u64 {
     mixed ^ (mixed >> 31)
 }
 
-/// The seed selects first the row, then its part, then the change. A row is repeated only after all others.
+/// The seed selects first the row, then its part, then the change. A row is selected again only after all others.
 pub fn drawn(root: &Path, seed: u64, only: &str) -> io::Result<Vec<Mutant>> {
     let mut paths = Vec::new();
     files(&root.join("crates/levels/src"), "rs", &mut paths)?;

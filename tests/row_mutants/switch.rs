@@ -41,7 +41,7 @@ pub(crate) fn reached_row(number: usize) {
 }
 "#;
 
-/// A test against the unchanged text of the table, which every changed condition would fail.
+/// A test that compares the text of the table. Every changed condition would fail it.
 const CHECK: (&str, &str) = (
     "assert_eq!(read, Some(row), \"{} with {values:?}\", table.name);",
     "let (_, _, _) = (read, row, table.name);",

@@ -44,7 +44,7 @@ impl Program {
 }
 
 impl<'a> Test<'a> {
-    /// `reached` is a file of its own.
+    /// `reached` is a separate file for this test.
     pub fn measure(program: &'a Program, name: String, reached: &Path) -> io::Result<Self> {
         fs::write(reached, "")?;
         let mut test = Self { program, name, taken: Duration::ZERO, reaches: BTreeSet::new() };
@@ -57,7 +57,7 @@ impl<'a> Test<'a> {
         Ok(test)
     }
 
-    /// Within three times its duration without the change, and some seconds.
+    /// The time limit is three times its duration without the change, and some seconds.
     pub fn passes(&self, change: usize) -> io::Result<bool> {
         let patience = self.taken * 3 + Duration::from_secs(20);
         let mut command = self.program.command();

@@ -18,7 +18,7 @@ fn start(part: &str) -> Child {
 #[test]
 fn a_sample_of_each_part_has_no_finding() {
     let started = PARTS.map(|part| (part, start(part)));
-    // All have ended before one of them fails the test.
+    // All parts end before a failed one fails the test.
     let ended = started.map(|(part, child)| (part, child.wait_with_output().expect("the campaign ends")));
     for (part, output) in ended {
         assert!(output.status.success(), "{part}: {}", String::from_utf8_lossy(&output.stderr));

@@ -64,7 +64,7 @@ fn another_user_cannot_open_or_block_a_run() {
         return;
     }
     let scratch = Scratch::new("stranger");
-    // This program's directory may be inaccessible to another user.
+    // Another user may have no access to this program's directory.
     fs::copy(env!("CARGO_BIN_EXE_robustness"), scratch.file("attacker")).expect("it can be copied");
     let place = scratch.file("");
     fs::set_permissions(&place, fs::Permissions::from_mode(0o755)).expect("it is ours");
@@ -87,7 +87,7 @@ fn another_user_cannot_open_or_block_a_run() {
         .current_dir(&place)
         .env("RCS_RUNS", &place)
         .output();
-    // In a changed root without its own mount point `unshare` itself fails.
+    // `unshare` itself fails in a changed root that is not a mount point.
     let refused = |output: &Output| output.status.code() == Some(9) || output.stderr.starts_with(b"unshare:");
     let output = match output {
         Ok(output) if !refused(&output) => output,

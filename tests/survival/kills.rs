@@ -30,7 +30,7 @@ fn assert_log_reaches(log: &std::path::Path, tick: u64, behind: u64) {
 fn a_run_may_be_killed_in_any_phase_of_a_job() {
     let scratch = Scratch::new("kills");
     for kill in 0..kills() {
-        // Golden steps through the job: all phases occur, in a different order in every job.
+        // The steps follow the golden ratio, so that all phases occur, in a different order in every job.
         let (job, length) = JOBS[usize::try_from(kill % 4).expect("small")];
         let phase = (kill as f64 * 0.618_033_988_75).fract();
         let target = BEHIND_FAST + 25 + (phase * (length - 1_500) as f64) as u64;
@@ -43,7 +43,7 @@ fn a_run_may_be_killed_in_any_phase_of_a_job() {
         run.kill();
         assert_log_reaches(&log, tick, BEHIND_FAST);
         if let Some(reader) = reader {
-            // A killed writer leaves half a tick, which readers detect.
+            // A killed writer can leave half a tick, which readers detect.
             match reader.memory() {
                 Ok(memory) => assert!(memory.task.header.stamp.0 >= tick),
                 Err(error) => assert_eq!(error, ReadError::Busy),

@@ -30,7 +30,7 @@ fn without_shared_memory_the_run_continues_unobserved() {
         &ended,
         "other programs cannot watch the run, shared memory is not available: /dev/shm has ",
     );
-    // Enough for the start, then taken by another process.
+    // The memory is enough for the start. Then another process fills it.
     let fills = "mount -t tmpfs -o size=8m tmpfs /dev/shm && \
                  { (until ls /dev/shm/rcs-*data; do sleep 0.1; done; sleep 2; \
                     head -c 16M /dev/zero > /dev/shm/filler) > /dev/null 2>&1 & }";
@@ -43,7 +43,7 @@ fn without_shared_memory_the_run_continues_unobserved() {
 #[test]
 fn memory_lost_during_the_start_is_reported() {
     let scratch = Scratch::new("race");
-    // Enough for the start, then taken once the first object exists.
+    // The memory is enough for the start. It is filled when the first object exists.
     let fills = "mount -t tmpfs -o size=2200k tmpfs /dev/shm && \
                  { (i=0; until ls /dev/shm/rcs-*_* || [ $((i += 1)) -gt 3000 ]; do :; done; \
                     head -c 4M /dev/zero > /dev/shm/filler) > /dev/null 2>&1 & }";
@@ -52,7 +52,7 @@ fn memory_lost_during_the_start_is_reported() {
             eprintln!("no right to mount: a full /dev/shm cannot be tried");
             return;
         };
-        // Random, but every end has a message.
+        // The end is random, but it always has a message.
         match ended.status {
             Some(0) => assert_eq!(ended.number("ticks"), 50),
             Some(3) => assert!(ended.last_words().contains("/dev/shm is full"), "{}", ended.said),

@@ -209,7 +209,7 @@ fn commands_and_statuses_have_the_names_of_the_code() {
     let (interfaces, page) = (Interfaces::new(), page());
     let matches = |line: &Line, code: &str| {
         let variant = interfaces.variant(code);
-        // V-Grip and Tool-Grip share their words, those of V-Grip (VI.5).
+        // Tool-Grip has the words of V-Grip (VI.5).
         let bare = ["VGRIP-", "TGRIP-", "VG-", "TG-", "vgrip-", "tgrip-"]
             .iter()
             .find_map(|prefix| line.name.strip_prefix(prefix))

@@ -65,7 +65,7 @@ fn every_package_uses_only_what_its_row_permits() {
                 .map(|used| format!("{package} uses {used}")),
         );
         let unused = rows[package].difference(used);
-        // The tests use the libraries of a run only in their own tests.
+        // The package of the tests uses the libraries of a run only in its unit tests.
         let unused = unused.filter(|_| package != "whole-system-tests");
         wrong.extend(unused.map(|unused| format!("{package} may use {unused} and does not")));
     }

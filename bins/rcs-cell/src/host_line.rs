@@ -37,8 +37,8 @@ impl HostLine {
         &self.line
     }
 
-    /// The file descriptor to wait for; `None` without a host, which signals a hang-up, and without room for more
-    /// bytes.
+    /// The file descriptor to wait for. `None` if the line is full or no host is connected, which would poll as a
+    /// hang-up.
     #[must_use]
     pub fn readable(&self) -> Option<BorrowedFd<'_>> {
         (self.host && self.line.room() > 0).then(|| self.pty.fd())

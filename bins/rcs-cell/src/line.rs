@@ -85,9 +85,9 @@ impl SerialLine {
     }
 }
 
-/// Schedule of the controller's steps. A move takes one period. A controller without a move takes a command as soon as
-/// it has arrived (A 2.3): otherwise a host with the same period would lose every second period when its frames
-/// straddle the controller's steps.
+/// Schedule of the controller's steps. A move takes one period. An idle controller takes a command as soon as it has
+/// arrived (A 2.3). Otherwise a host with the same period would lose every second period when its frames straddle the
+/// controller's steps.
 #[derive(Debug)]
 pub struct Cadence {
     period_us: u64,
@@ -102,7 +102,7 @@ impl Cadence {
         Self { period_us: u64::from(period_us), last: now, busy: true }
     }
 
-    /// Time at which the next step is due, us, judged by the bytes now on the line.
+    /// Time at which the next step is due, us. It depends on the bytes now on the line.
     #[must_use]
     pub fn next(&self, line: &SerialLine) -> u64 {
         let regular = self.last + self.period_us;

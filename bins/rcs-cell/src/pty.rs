@@ -2,7 +2,7 @@
 //!
 //! The path is a symbolic link to the slave. A pseudo-terminal has no modem lines: an open terminal stands for the
 //! host's DTR. When a host closes it, it is prepared for the next one. A killed host leaves its exclusive lock
-//! (TIOCEXCL), which cannot be reset from outside: then a new terminal replaces it.
+//! (TIOCEXCL), which other processes cannot reset. A new terminal then replaces the locked one.
 //!
 //! The program holds an abstract socket named after the path, which the kernel removes with the program. A link without
 //! its socket is stale and may be replaced.
@@ -132,7 +132,7 @@ impl Pty {
 
 impl Drop for Pty {
     fn drop(&mut self) {
-        // Only if the link is still this program's own.
+        // Another program may have replaced the link.
         if self.path.read_link().is_ok_and(|target| target == self.slave) {
             // Nowhere is left to report an error; the next start replaces the stale link.
             let _ = std::fs::remove_file(&self.path);
@@ -142,7 +142,7 @@ impl Drop for Pty {
 
 /// Binds the abstract socket that shows that the path is in use.
 fn claim(path: &Path) -> io::Result<UnixDatagram> {
-    // Names of sockets are short: the end of a long path identifies it.
+    // A socket name has a limited length, so it contains only the end of a long path.
     let bytes = path.as_os_str().as_bytes();
     let end = &bytes[bytes.len().saturating_sub(90)..];
     UnixDatagram::bind_addr(&SocketAddr::from_abstract_name([b"rcs-cell:", end].concat())?)
@@ -229,7 +229,7 @@ mod tests {
         assert!(matches!(Pty::open(&path), Err(PtyError::Alive(_))));
         drop(first);
         assert!(path.symlink_metadata().is_err());
-        // The state that a killed program leaves.
+        // A killed program leaves such a stale link.
         std::os::unix::fs::symlink("/dev/pts/99999", &path).unwrap();
         drop(Pty::open(&path).unwrap());
         assert!(path.symlink_metadata().is_err());

@@ -1,5 +1,5 @@
-//! The input and output around the state machine: one thread, which sleeps until a byte arrives or is due. Nothing in
-//! it blocks: bytes that a host does not read are lost.
+//! The input and output around the state machine. Its only thread sleeps until a byte arrives or is due. It never
+//! blocks on a write: bytes that a host does not read are lost.
 
 use std::{
     collections::VecDeque,
@@ -33,7 +33,7 @@ use crate::{
 };
 
 const LONGEST_SLEEP: u64 = 50_000; // longest sleep, us: the program notices a signal within this time
-/// Longest time that one step simulates, s, after the program was stopped.
+/// After a stopped program resumes, its first step simulates at most this time, s.
 const LONGEST_STEP_S: f64 = 2.0;
 
 #[derive(Debug, thiserror::Error)]

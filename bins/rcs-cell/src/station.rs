@@ -7,8 +7,8 @@
 //! ```
 //!
 //! The cell advances when its outputs have been read, and its sensors are in the registers at once. So the station
-//! adds one tick at most, and none if a controller writes and reads between two ticks. Lines of standard input are
-//! those of jobs without `**`: what a person does at the cell.
+//! delays a controller by one tick at most, and by none if it writes and reads between two ticks. Lines of standard
+//! input are actions of a person at the cell: lines of a job without `**`.
 
 mod camera;
 mod robot;
@@ -232,7 +232,7 @@ impl Station {
             coupler.tell();
         }
         for event in self.cell.events() {
-            // Contacts that some command permits are not events here.
+            // The station does not report contacts that a command can permit.
             let is_lamp = matches!(event, CellEvent::Lamps(_) | CellEvent::Warning(_));
             if !is_lamp {
                 stdout_line!("[cell] {event}");

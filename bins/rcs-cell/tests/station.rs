@@ -184,7 +184,7 @@ fn garbage_and_further_connections_do_not_disturb_a_client() {
     for length in [1, 6, 7, 8, 12, 100, 259, 260, 261, 5000] {
         for kind in 0..4 {
             let mut bytes: Vec<u8> = (0..length).map(|_| noise.random()).collect();
-            // Frames that are more and more nearly right.
+            // Each frame has fewer errors than the one before.
             let right = [0, 1, 0, 0, 0, 6, 1];
             let kept = [0, 4, 6, 7][kind].min(length);
             bytes[..kept].copy_from_slice(&right[..kept]);

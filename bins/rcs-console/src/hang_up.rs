@@ -18,7 +18,7 @@ const NO_TERMINAL: i32 = 1; // exit status of a console whose terminal has disap
 
 /// End this program at once when the keyboard's terminal disappears. A run detects the end of the session.
 pub fn end_with_terminal() -> io::Result<()> {
-    // The same choice as in the library that reads keys.
+    // The library that reads keys selects the terminal in the same way.
     let keyboard =
         if io::stdin().is_terminal() { None } else { Some(File::options().read(true).open("/dev/tty")?) };
     let wait = move || {

@@ -43,7 +43,7 @@ impl Search {
                 waiting.take(
                     alive.filter(|name| self.wanted.as_ref().is_none_or(|wanted| wanted == name)).collect(),
                 );
-                // A new run may accept operators only a moment after its start, so the only run is tried again.
+                // A new run accepts operators only a moment after its start, so the console tries an only run again.
                 waiting.refused.take_if(|_| waiting.runs.len() == 1);
                 waiting.phase = waiting.chosen().and_then(memory::starting);
                 waiting.boards = waiting.chosen().and_then(boards::coming_up).unwrap_or_default();

@@ -194,7 +194,7 @@ impl Story {
         begun.last().filter(|trouble| is_told || tick < trouble.tick)
     }
 
-    /// The first failure and its consequences; `None` without a failure, or if work has continued after it.
+    /// The first failure and its consequences; `None` without a failure, or if the robot has continued to work.
     #[must_use]
     pub fn account(&self) -> Option<Account> {
         self.ended.clone().unwrap_or_else(|| self.account_until(u64::MAX))
@@ -209,7 +209,7 @@ impl Story {
         }
     }
 
-    /// The tick whose picture shows a failure. The cell shows the events of a tick with the next one, if any.
+    /// The tick whose picture shows a failure: the next one, if any, because the cell shows events one tick late.
     #[must_use]
     pub fn shown_at(&self, failure: &Failure) -> u64 {
         failure.shown_at().min(self.last)
@@ -236,7 +236,7 @@ impl Story {
         alarms.account()
     }
 
-    /// Restarts of the link up to a tick, oldest first.
+    /// The restarts of the link up to a tick, oldest first.
     #[must_use]
     pub fn restarts(&self, tick: u64) -> &[Restart] {
         until(&self.restarts, tick, |restart| restart.tick)

@@ -86,7 +86,7 @@ impl Console {
         let mut model = Model::new(Screen::Ladder);
         let mut hand = None;
         let source: Box<dyn Source> = match (&cli.run, &cli.log) {
-            // The run waits for boards or neighbours. It can be shown from its first tick on.
+            // The run waits for boards or neighbours. Its buffers can be shown from its first tick on.
             (Some(run), _) if memory::starting(run).is_some() || boards::coming_up(run).is_some() => {
                 return Ok(Self::search(Some(run.clone())));
             }
@@ -112,8 +112,7 @@ impl Console {
     }
 }
 
-/// Let a signal set `stop`. If the terminal blocks output (Ctrl-S, a hanging line), the program ends after a time
-/// limit.
+/// Let a signal set `stop`. If the terminal blocks output (Ctrl-S, a hung line), the program ends after a time limit.
 fn end_by_signal(stop: Arc<AtomicBool>) -> io::Result<()> {
     let mut signals = Signals::new([SIGTERM, SIGHUP, SIGINT, SIGQUIT])?;
     let wait = move || {
@@ -202,7 +201,7 @@ impl Session {
                     }
                     self.drawn = None;
                 }
-                // A signal; the flag says which one.
+                // A signal interrupted the call; the flag tells which one.
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => return Err(ConsoleError::Terminal(error)),
             }

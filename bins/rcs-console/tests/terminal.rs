@@ -109,7 +109,7 @@ impl Terminal {
         self.wait_while(|screen| !screen.contains(text), &format!("{text:?} did not appear"));
     }
 
-    /// Press Escape, and wait until the text that it closes disappears: Escape with the next key would be Alt.
+    /// Press Escape, and wait until its text disappears. A terminal reads Escape and an immediate next key as Alt.
     fn escape(&mut self, closes: &str) {
         self.press("\x1b");
         self.wait_while(|screen| screen.contains(closes), &format!("{closes:?} did not go away"));
@@ -185,7 +185,7 @@ fn run(name: &str, log: &Path, job: &str, speed: u8) -> Running {
     begin(config)
 }
 
-/// A run in real time, accelerated by `speed`, whose job of one command waits for an operator; its data are `data`.
+/// A run in real time, accelerated by `speed`, with the data `data`. Its job of one command waits for an operator.
 fn waiting_run(directory: &Path, data: &Path, name: &str, speed: u8) -> Running {
     let job = directory.join("safe.job");
     std::fs::write(&job, TO_SAFE).unwrap();

@@ -84,7 +84,7 @@ impl Pace {
     fn wait(&mut self, time: u64) {
         let (first, begin) = *self.start.get_or_insert_with(|| (time, Instant::now()));
         let seconds = Duration::from_nanos(time.saturating_sub(first)).as_secs_f64() / self.rate;
-        // A damaged log can have any time stamp. A wait of this length never ends.
+        // A damaged log can have any time stamp. If its time is out of range, the player waits as long as possible.
         let due = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
         thread::sleep(due.saturating_sub(begin.elapsed()));
     }

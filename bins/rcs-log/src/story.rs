@@ -81,7 +81,7 @@ pub struct CommandStory {
     pub first_tick: u64, // tick in which Task took it
     pub last_tick: u64,  // tick in which it ended, or the last tick of the log
     pub status: String,
-    /// The unconfirmed goals of a finished command; empty if the sensors confirm all of them.
+    /// The unconfirmed goals of a finished command; empty if the sensors confirm all goals.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub unconfirmed: &'static str,
 }
@@ -109,7 +109,7 @@ pub struct CommandHistory {
     last: Option<HwsReport>,
 }
 
-/// For the commands alone: its failure has the tables of this program.
+/// A history that is used only for commands. It explains a failure with the tables of this program.
 impl Default for CommandHistory {
     fn default() -> Self {
         Self::new(Ladder::processes())

@@ -1,4 +1,4 @@
-//! The Data System: a server with a data base of items, which serves one run after the other.
+//! The Data System: a server with a database of items, which serves one run after the other.
 
 use neighbours::{
     data_system::{Server, command},

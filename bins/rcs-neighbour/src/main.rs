@@ -38,7 +38,7 @@ enum Error {
     Peer(#[from] PeerError),
     #[error("{KEYS_MOVED}")]
     KeysMoved,
-    /// The data base cannot be used.
+    /// The database cannot be used.
     #[error("the items cannot be kept: {0}")]
     DataBase(#[from] StoreError),
     /// The cell description cannot be used.

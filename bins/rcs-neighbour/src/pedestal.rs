@@ -42,7 +42,7 @@ struct Served {
     system: System,
     /// Tick number of the last pulse.
     pulse: u64,
-    /// Reported last on standard output: command number, report, and why the command was refused.
+    /// The last values printed: command number, report, and the reason for a refusal.
     said: (u32, PedestalReport, String),
 }
 

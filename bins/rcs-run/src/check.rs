@@ -56,7 +56,7 @@ struct Outcome {
     blocks: usize,
     records: serde_json::Map<String, serde_json::Value>,
     jobs: Vec<String>,
-    /// Jobs that a mapping cannot execute: a run with it is refused.
+    /// Jobs that a mapping cannot execute; `rcs-run` refuses them with that mapping.
     not_by_field: Vec<String>,
     findings: Vec<Finding>,
     data: Vec<OfDatum>, // the findings by the datum that is probably wrong, the worst datum first
@@ -135,7 +135,7 @@ pub fn findings(data: &Path) -> (Vec<String>, Vec<String>) {
     (errors.into_iter().map(words).collect(), warnings.into_iter().map(words).collect())
 }
 
-/// Motions that the checks of this process have simulated, by the text of the cell description.
+/// Motions that this process has already simulated, by the text of the cell description.
 #[derive(Default)]
 struct Flights(Mutex<HashMap<Arc<str>, Arc<Known>>>);
 
@@ -214,7 +214,7 @@ impl Checked {
         self.reports.iter().flat_map(|(_, report)| report.diagnostics()).collect()
     }
 
-    /// The findings by the datum that is probably wrong, the worst datum first.
+    /// The findings, grouped by the datum that is probably wrong, with the worst datum first.
     fn by_datum(&self) -> Vec<OfDatum> {
         let suspects: Vec<Suspects> = self.findings().into_iter().map(Diagnostic::suspects).collect();
         let of_datum = |Group { datum, findings, errors }| OfDatum {
@@ -278,7 +278,7 @@ impl Checked {
     }
 }
 
-/// The cell and the text of its description, and the findings in it, alone and with the task data.
+/// The cell, the text of its description, and the findings in it, both alone and together with the task data.
 fn cell(path: &Path, store: Option<&Store>) -> (Option<(Cell, Source)>, Diagnostics) {
     let mut problems = Problems::default();
     let text = match files::read_text(path) {
@@ -331,12 +331,12 @@ fn mappings(data: &Path) -> Diagnostics {
     all
 }
 
-/// The jobs that a mapping of a data directory cannot execute. A directory may have mappings of several cells, so this
-/// is no error of the data.
+/// The jobs that a mapping of a data directory cannot execute. A directory may have mappings of several cells, so such
+/// a job is no error of the data.
 fn not_by_field(data: &Path, jobs: &[Job]) -> Vec<String> {
     let mut refused = Vec::new();
     for path in FIELDS.all(data) {
-        // A wrong mapping is a finding of its own.
+        // A wrong mapping is reported separately.
         let Ok(mapping) = field::read(&path) else { continue };
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         refused.extend(jobs.iter().filter_map(|job| {

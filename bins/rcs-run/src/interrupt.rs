@@ -22,7 +22,7 @@ use crate::rcs_run::error::Error;
 /// Signals within this time are treated as one: a terminal, `timeout` and a service manager send several.
 const SAME: Duration = Duration::from_secs(1);
 
-/// A flag that an interrupt, a hang-up or a termination request sets. A second signal, [`SAME`] later, ends the
+/// A flag that an interrupt, a hang-up or a termination request sets. A second signal at least [`SAME`] later ends the
 /// program.
 pub fn interruption() -> Result<Arc<AtomicBool>, Error> {
     let stop = Arc::new(AtomicBool::new(false));
@@ -38,7 +38,7 @@ fn watch(stop: Arc<AtomicBool>) -> io::Result<()> {
             stop.store(true, Ordering::Relaxed);
             if is_second(&mut first, Instant::now()) {
                 stderr_line!("rcs-run: a second signal ends the program at once");
-                // Without destructors: one of them may block the orderly end.
+                // This exit runs no destructors, because a blocked destructor may be the reason for the second signal.
                 low_level::exit(128 + signal);
             }
         }
@@ -46,7 +46,7 @@ fn watch(stop: Arc<AtomicBool>) -> io::Result<()> {
     thread::Builder::new().name("signals".into()).spawn(wait).map(drop)
 }
 
-/// Record the first signal. True for a later one that is not treated as the same.
+/// Record the first signal. Returns true for a later signal that is not treated as the same one.
 fn is_second(first: &mut Option<Instant>, now: Instant) -> bool {
     now.saturating_duration_since(*first.get_or_insert(now)) > SAME
 }

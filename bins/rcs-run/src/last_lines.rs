@@ -35,7 +35,7 @@ impl fmt::Display for LastLines<'_> {
         } else if result.parts.is_empty() {
             writeln!(f, "No part is in the cell.")?;
         }
-        // A held part first, as the most important information for the operator.
+        // A held part is listed first, because it is the most important information for the operator.
         let (held, others): (Vec<_>, Vec<_>) = result.parts.iter().partition(|part| part.held);
         for part in held.into_iter().chain(others) {
             writeln!(f, "{part}")?;

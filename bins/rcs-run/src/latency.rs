@@ -25,7 +25,7 @@ use crate::rcs_run::{answer::answer, arguments::LatencyArguments, error::Error, 
 const SLOT: Duration = Duration::from_millis(TICK_MS);
 /// Upper limit of the p99 wake-up latency for `good`, µs: a hundredth of a frame's time on the line.
 const GOOD_US: f64 = 200.0;
-/// Upper limit for `usable`, µs: the frame of a tick is on the line before half of the tick is over.
+/// Upper limit for `usable`, µs. The frame of a tick is then on the line within the first half of the tick.
 const USABLE_US: f64 = 2_000.0;
 /// Edges of the printed histogram, microseconds.
 const EDGES: [u64; 10] = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 40_000];
@@ -180,7 +180,7 @@ impl fmt::Display for Measurement {
 mod tests {
     use super::*;
 
-    /// A clock that advances only while asleep; each sleep ends late by the next entry.
+    /// A clock that advances only during a sleep. Each sleep ends late by the next entry.
     struct Made {
         now: Duration,
         late: Vec<Duration>,

@@ -1,7 +1,7 @@
 //! Messages for failures of shared memory, in the operating system or in iceoryx2.
 //!
 //! If shared memory is full when a page is first written, or another process truncates a file, the system ends the
-//! program with SIGBUS. `executive::memory::place` checks the free space before. If another process damages shared
+//! program with SIGBUS. `executive::memory::place` checks the free space beforehand. If another process damages shared
 //! memory during its set-up, iceoryx2 can wait forever ([`stuck`]).
 
 use std::{sync::Arc, time::Duration};

@@ -96,7 +96,7 @@ fn asked(arguments: &PoseArguments, store: &Store) -> Result<Pose, Error> {
     })
 }
 
-/// Common memory some ticks later: `joystick record` is carried out in the tick after its answer.
+/// Common memory some ticks later, because `joystick record` is executed in the tick after its answer.
 fn settled(attached: &Attached) -> Result<CommonMemory, Error> {
     let first = attached.memory()?;
     let begun = Instant::now();

@@ -27,7 +27,7 @@ use crate::rcs_run::error::Error;
 pub struct Reach {
     robot: String,
     arm: String,
-    /// Angles of the axes at the start of the jobs, where EGM must begin, degrees.
+    /// Angles of the axes at which EGM must begin, at the start of the jobs, degrees.
     start_deg: Option<Axes>,
     poses: usize, // number of taught poses and location points that the T3 reaches
     poses_out_of_reach: Vec<String>, // names of the poses that the arm does not reach
@@ -104,7 +104,7 @@ impl Reach {
     }
 }
 
-/// Rating of a start: finished jobs first, then motions, then the margin.
+/// Rating of a start by its finished jobs, then its motions, then its margin.
 fn score(all: &[Vec<JobReach>], start: usize) -> f64 {
     let jobs = || all.iter().filter_map(|of_starts| of_starts.get(start));
     let done = jobs().filter(|job| job.trouble.is_none()).count();

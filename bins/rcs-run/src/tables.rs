@@ -1,8 +1,8 @@
 //! `rcs-run tables`: every decision table as Markdown, with explanations of its names.
 //!
-//! Each table is followed by its steps, and by the state variables and actions that only it has. Those of
-//! several tables are explained once, under *Values* at the end of the process. A table that an earlier process
-//! has is not printed again.
+//! Each table is followed by its steps, and by the state variables and actions that only this table has. Those of
+//! several tables are explained once, under *Values* at the end of the process. A table of an earlier process is not
+//! printed again.
 
 #[cfg(test)]
 mod tests;

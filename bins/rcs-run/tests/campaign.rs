@@ -91,7 +91,7 @@ fn branches_hurt_in_earlier_campaigns_are_done() {
 const REQUIRED: &str =
     "pause,pause-twice,refused,replaced,answer-lost,answer-late,answer-damaged,hold,nudge,held,restart,power";
 
-/// A sample of the campaign: all jobs, all required kinds and the E-stop. The ticks follow from the number of the job.
+/// A sample of the campaign: all jobs, all required kinds and the E-stop. The number of the job determines the ticks.
 #[test]
 fn campaign_sample_recovers_without_damage() {
     let count = |row: &Value, name: &str| row[name].as_u64().expect("counts are numbers");
@@ -124,7 +124,7 @@ fn campaign_sample_recovers_without_damage() {
     assert!(100 * done >= 97 * branches, "{done} of {branches} branches are done");
 }
 
-/// A draw repeats with any number of threads, and one command line repeats each branch.
+/// A draw gives the same branches with any number of threads, and one command line repeats each branch.
 #[test]
 fn drawn_disturbances_repeat_alone_and_together() {
     let draw = |threads: &str| {

@@ -118,7 +118,7 @@ fn blocks_loaded_by_a_job_are_checked_against_the_cell() {
     assert!(said.contains("the blocks fit the cell"), "{said}");
 }
 
-/// Two objects that differ only in their vision ids; the cell has parts of two sizes by these names.
+/// Two objects that differ only in their vision ids. The cell has two parts with these names, of different sizes.
 #[test]
 fn objects_differing_only_in_vision_id_cause_a_warning() {
     let place = Place::new();
@@ -157,7 +157,7 @@ fn help_and_version_have_status_0() {
     assert_eq!(help.status.code(), Some(0));
     assert!(stdout(&help).contains("Examples:") && stdout(&help).contains("Exit status"));
     let version = rcs_run(&["--version"]);
-    // The commit follows it if the source is a repository.
+    // The commit follows the version if the source is a repository.
     assert!(
         stdout(&version).starts_with(concat!("rcs-run ", env!("CARGO_PKG_VERSION"))),
         "{}",
@@ -274,7 +274,7 @@ fn tool_command_without_a_path_to_its_end_at_location_is_refused() {
     }
 }
 
-/// The approach A/D-15 leads down instead of up: the fingers collide with the floor of the tray.
+/// The approach A/D-15 leads down instead of up, so the fingers collide with the floor of the tray.
 const DOWN: [&str; 2] = [
     "    1    t    -1500        0      0      -mtb-   A/D-15\n",
     "    1    t      300        0      0      -mtb-   A/D-15\n",
@@ -292,7 +292,7 @@ fn run_refuses_a_job_using_a_wrong_datum() {
     assert!(last_line(&refused).contains("--unchecked runs it"), "{}", last_line(&refused));
     let unchecked = run(&["linkbar", "--unchecked", "--ticks", "5", "--json"]);
     assert_eq!((unchecked.status.code(), &json(&unchecked)["ticks"]), (Some(0), &5.into()));
-    // A job that does not use the datum is run.
+    // A job that does not use the wrong datum can run.
     let other = place.job("other", "== MOVE -- 0 -- 0 0 HOME 0 -- 0\n");
     assert_eq!(run(&[&other]).status.code(), Some(0), "{}", last_line(&run(&[&other])));
 }
@@ -373,7 +373,7 @@ fn run_starts_despite_an_unrelated_wrong_datum() {
     assert!(said.contains("no movetable is named LK-GPR-FX1"), "{said}");
 }
 
-/// Check that a run announces as many errors and warnings of task data and cell description as `check` shows.
+/// Check that a run reports as many errors and warnings in task data and cell description as `check`.
 fn assert_announced(data: &str) {
     let shown = json(&rcs_run(&["check", "--json", data]));
     let count = |severity: &str, extension: &str| {
@@ -412,19 +412,19 @@ fn assert_announced(data: &str) {
 /// Changes of copied data, each with a finding that does not prevent `--stand-by`: file, text, replacement.
 const TOLERATED: [&[(&str, &str, &str)]; 5] = [
     &[("cell.toml", "name = \"LINKBAR1_BH\"", "name = \"LINKBAR1_BX\"")],
-    // The same with an error of the task data: these are not compared with the cell.
+    // The same with an error in the task data, which are then not compared with the cell.
     &[
         ("cell.toml", "name = \"LINKBAR1_BH\"", "name = \"LINKBAR1_BX\""),
         ("directory.blk", "100 load ( files            )", "999 load ( files            )"),
     ],
     // A place of the cell that disagrees with its form.
     &[("cell.toml", "location = \"BRUSH\"", "location = \"BRUSX\"")],
-    // The same with an error of the task data.
+    // The same with an error in the task data.
     &[
         ("cell.toml", "location = \"BRUSH\"", "location = \"BRUSX\""),
         ("directory.blk", "642 load ( brush           )", "999 load ( brush           )"),
     ],
-    // A mistyped line that others do not need.
+    // A mistyped line that no other line needs.
     &[("directory.blk", "642 load ( brush           )", "999 load ( brush           )")],
 ];
 
@@ -494,7 +494,7 @@ fn data_error_has_a_place_and_prevents_the_run() {
     }
 }
 
-/// What `check` and a run of the linkbar say of the shipped data with one text of a file replaced.
+/// The findings of `check` and of a run of the linkbar, for the shipped data with one replaced text.
 fn said_of(place: &Place, file: &str, from: &str, to: &str) -> [String; 2] {
     let data = place.data();
     let path = data.join(file);
@@ -646,7 +646,7 @@ fn real_time_run_has_one_tick_per_slot() {
     let result = json(&output);
     let slots = result["ticks"].as_u64().unwrap() + result["overruns"].as_u64().unwrap();
     let elapsed = result["wall_s"].as_f64().unwrap();
-    // The clock starts a little after the time that the result reports.
+    // The clock starts slightly later than the reported time.
     assert!(slots as f64 * 0.040 <= elapsed + 0.040, "{result}");
     assert!(String::from_utf8_lossy(&output.stderr).contains("real time: "));
     let fast = json(&rcs_run(&["--ticks", "10", "--json", "--log", "none"]));
@@ -744,7 +744,7 @@ fn clean_removes_the_remains_of_a_killed_run() {
     assert!(stdout(&alive).contains(&format!("linkbar-{} is running", child.id())), "{}", stdout(&alive));
     child.kill().unwrap();
     child.wait().unwrap();
-    // A run of another test may have cleaned up already; the test requires only that no remains exist.
+    // Another test may have cleaned up already. This test requires only that nothing remains.
     let cleaned = rcs_run(&["clean"]);
     assert_eq!(cleaned.status.code(), Some(0));
     assert_eq!(executive_runs(child.id()), 0);
@@ -771,7 +771,7 @@ fn wait_for(mut condition: impl FnMut() -> bool) {
     }
 }
 
-/// The arm does all jobs from its shipped place, but not from a place nearer to the parts.
+/// The arm can execute all jobs from its shipped place, but not from a place nearer to the parts.
 #[test]
 fn reach_check_covers_every_pose_and_motion() {
     let check = |robot: &str| {

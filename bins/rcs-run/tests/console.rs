@@ -99,7 +99,7 @@ fn closed_terminal_does_not_end_the_run() {
     assert!(record::Log::open(&log).unwrap().complete);
 }
 
-/// The standard error of a program whose standard output is lost.
+/// Runs a program whose standard output is lost; returns its standard error.
 fn without_output(arguments: &[&str], lost: Stdio) -> Output {
     command(arguments).stdout(lost).stderr(Stdio::piped()).spawn().unwrap().wait_with_output().unwrap()
 }

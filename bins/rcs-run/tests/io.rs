@@ -34,7 +34,7 @@ impl Cell {
         for (address, station) in ADDRESSES.iter().zip(&stations) {
             text = text.replace(address, &station.address().to_string());
         }
-        // No test of times: the machine may be busy.
+        // Times are not tested, because the machine may be busy.
         text = text.replace("exchange_ms = 20\ntimeout_ms = 15\n", "");
         text =
             text.replace("watchdog_ms = 500\n", "watchdog_ms = 500\nexchange_ms = 1000\ntimeout_ms = 900\n");

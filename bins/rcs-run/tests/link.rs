@@ -53,7 +53,7 @@ impl Place {
 struct Exact {
     joints: Joints,
     at: Plate,
-    /// Steps of the last commands and the longest one: the word that has changed most, 0.01 in or 0.01 degree.
+    /// Steps of the last commands, and the longest step: the largest change of a word, 0.01 in or 0.01 degree.
     last: [u16; 3],
     longest: u16,
 }
@@ -93,11 +93,11 @@ impl Peer {
     }
 
     fn plug_with(link: &Path, manner: Manner) -> Self {
-        // A program that another test starts meanwhile must not inherit it; otherwise it would not hang up.
+        // A program started by another test must not inherit the master, or closing it would not hang up.
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
         grantpt(&master).unwrap();
         unlockpt(&master).unwrap();
-        // A cable has no echo. Bytes sent before the port is open would otherwise return.
+        // A cable has no echo. With echo, bytes sent before the port is open would return.
         let mut settings = tcgetattr(&master).unwrap();
         settings.make_raw();
         tcsetattr(&master, OptionalActions::Now, &settings).unwrap();
@@ -152,7 +152,7 @@ fn control(mut master: File, manner: Manner, stop: &AtomicBool) -> (ControllerSt
             // No data, or no process has the port open.
             Err(error) => assert!(error.kind() == ErrorKind::WouldBlock || error.raw_os_error() == Some(5)),
         }
-        // Silence is a step of its own: it ends a torn frame.
+        // Silence is a separate step, because it ends a torn frame.
         if inputs.rx.length == 0 && stepped.elapsed() < Duration::from_millis(20) {
             thread::sleep(Duration::from_millis(1));
             continue;
@@ -425,7 +425,7 @@ fn send(child: &Child, signal: Signal) {
     kill_process(Pid::from_child(child), signal).unwrap();
 }
 
-/// The stream of points ends at rest, however a run ends.
+/// The stream of points ends at rest for every end of a run.
 #[test]
 fn signal_stops_the_robot_before_the_run_ends() {
     thread::scope(|all| {
@@ -560,7 +560,7 @@ fn injected_faults_are_counted_and_survived() {
     let output = run();
     let result = json(&output);
     assert_eq!(output.status.code(), Some(0), "{result} {}", last_words(&output));
-    // Without a rate, a fault strikes every byte of its tick.
+    // A fault without a rate affects every byte of its tick.
     assert_eq!(result["faults"]["kinds"]["flip"], 32, "{result}");
     assert_eq!(json(&run())["digest"], result["digest"], "the same plan gives the same run");
 }

@@ -21,7 +21,7 @@ fn said(output: &Output) -> String {
     said.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The end of a program that must end by itself; one that waits for a FIFO never would.
+/// Waits for a program that must end by itself. It would never end if it waited for a FIFO.
 fn ended(mut child: Child) -> Output {
     let started = Instant::now();
     while child.try_wait().unwrap().is_none() {
@@ -98,7 +98,7 @@ fn cyclic_link_is_followed_once() {
 fn file_size_limit_ends_the_log_but_not_the_run() {
     let place = tempfile::tempdir().unwrap();
     let log = place.path().join("run.mcap");
-    // Blocks of 512 bytes or of 1024: more than the head of the log, less than all of it.
+    // The limit counts blocks of 512 or 1024 bytes. Both are more than the log's head and less than the whole log.
     let output = Command::new("sh")
         .args(["-c", "ulimit -f 3000 && exec \"$@\"", "sh", env!("CARGO_BIN_EXE_rcs-run")])
         .args(["linkbar", "--shared-memory", "off", "--log", log.to_str().unwrap()])

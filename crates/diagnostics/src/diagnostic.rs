@@ -84,7 +84,7 @@ impl Diagnostic {
         self.problem.expected.as_deref()
     }
 
-    /// What was found, if the message compares it with what was expected.
+    /// The found value, if the message compares it with the expected one.
     #[must_use]
     pub fn found(&self) -> Option<&str> {
         self.problem.found.as_deref()
@@ -102,7 +102,7 @@ impl Diagnostic {
         self.problem.at
     }
 
-    /// The nearest known name, if one is near.
+    /// The nearest known name, if one is similar.
     #[must_use]
     pub fn nearest(&self) -> Option<&str> {
         self.problem.nearest.as_deref()

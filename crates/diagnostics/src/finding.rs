@@ -12,7 +12,7 @@ pub struct Finding {
     pub severity: &'static str,
     /// Stable short name of the kind of problem.
     pub code: String,
-    /// The file, relative to the data directory; as given for files that could not be read.
+    /// The file, relative to the data directory. A file that could not be read has its given path.
     pub file: String,
     /// `OFFSET`, if the finding is in a block.
     pub offset: Option<u32>,
@@ -32,7 +32,7 @@ pub struct Finding {
     pub message: String,
     /// What was expected.
     pub expected: Option<String>,
-    /// What was found, if the message compares it with what was expected.
+    /// The found value, if the message compares it with the expected one.
     pub found: Option<String>,
     /// The nearest known name.
     pub nearest: Option<String>,

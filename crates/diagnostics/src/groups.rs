@@ -9,7 +9,7 @@ use crate::{Diagnostic, Severity};
 pub struct Group {
     /// Name of the datum.
     pub datum: String,
-    /// Positions of its findings in the list that was grouped, errors first.
+    /// Positions of the findings in the grouped list, errors first.
     pub findings: Vec<usize>,
     /// Number of errors among them.
     pub errors: usize,
@@ -24,13 +24,13 @@ pub struct Suspects {
     pub error: bool,
 }
 
-/// Groups findings: the datum that most findings name gets them all, then the next one. The worst group is the first.
+/// Groups findings. The datum that most findings name gets all of these, then the next datum. The worst group is first.
 #[must_use]
 pub fn grouped(suspects: &[Suspects]) -> Vec<Group> {
     let mut left: Vec<usize> = (0..suspects.len()).collect();
     let mut groups = Vec::new();
     while !left.is_empty() {
-        // The first appearance decides between equals.
+        // Among equal counts, the datum that appears first wins.
         let mut counts: BTreeMap<&str, (usize, usize, usize)> = BTreeMap::new();
         let mut order = 0;
         for suspects in left.iter().filter_map(|&at| suspects.get(at)) {

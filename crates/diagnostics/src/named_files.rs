@@ -34,7 +34,7 @@ impl NamedFiles {
     /// The file of that name in the data directory, else the file with that path. Errors: [`UnknownFile`].
     pub fn find(&self, name: &Path, data: &Path) -> Result<PathBuf, UnknownFile> {
         let named = self.named(name, data);
-        // Also a file that is not regular: the reader's message says what was found.
+        // A file that is not regular is accepted here, because the reader reports its kind.
         let is_path = named.is_err() && (files::is_file(name) || fs::symlink_metadata(name).is_ok());
         if is_path { Ok(name.to_owned()) } else { named }
     }
@@ -81,7 +81,7 @@ pub struct UnknownFile {
 impl fmt::Display for UnknownFile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { what, name, known } = self;
-        // A path names the file of a name, too.
+        // The last part of a path can also be a name.
         let wanted = Path::new(name).file_stem().map_or_else(|| name.into(), |stem| stem.to_string_lossy());
         let known = known.iter().map(String::as_str);
         write!(f, "there is no {what} {name}: {}", alternatives(&wanted, known, "the data directory has"))

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::source::{At, BlockLines, BlockNumber, Source, lines_of};
 
-/// A place as a person counts it.
+/// A place in the numbers that messages show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Position {
     /// Block and offset, if the place is in a block.
@@ -30,7 +30,7 @@ pub struct Places<'s> {
     known: HashMap<u32, Lines<'s>>,
 }
 
-/// The last of the ascending items that begins at or before `byte`.
+/// The last item that begins at or before `byte`. The items are in ascending order.
 fn last_begun<T>(items: &[T], start: impl Fn(&T) -> u32, byte: u32) -> Option<usize> {
     items.partition_point(|item| start(item) <= byte).checked_sub(1)
 }
@@ -75,13 +75,13 @@ impl<'s> Places<'s> {
         Some(lines.in_block(at.start).unwrap_or_else(|| lines.in_file(at.start)))
     }
 
-    /// True if the remarks right above the line of a piece accept a warning: `%% accepted CODE: the reason`.
+    /// True if a remark directly above the line of a piece accepts the warning: `%% accepted CODE: the reason`.
     #[must_use]
     pub fn accepts(&self, at: Option<At>, code: &str) -> bool {
         let Some((at, source)) = at.and_then(|at| Some((at, self.source(at)?))) else { return false };
         let before = usize::try_from(at.start).ok().and_then(|start| source.text.get(..start));
         let mut above = before.unwrap_or_default().lines().rev();
-        // The beginning of the line, unless the piece is at its beginning.
+        // The text before the piece in its line, unless the piece begins the line.
         if before.is_some_and(|before| !before.ends_with('\n')) {
             above.next();
         }
@@ -106,7 +106,7 @@ impl<'s> Places<'s> {
 }
 
 impl Lines<'_> {
-    /// `None` for headers and for text between lines.
+    /// `None` for headers and for text between the lines of a block.
     fn in_block(&self, byte: u32) -> Option<Position> {
         let block = self.blocks.get(last_begun(&self.blocks, |block| block.start, byte)?)?;
         let number = last_begun(&block.lines, |line| line.start, byte)?;

@@ -39,17 +39,17 @@ pub struct Problem {
     pub message: String,
     /// What to do, or the nearest known name.
     pub help: Option<String>,
-    /// Another place related to the problem, with the words before it; it becomes the help.
+    /// Another place related to the problem, with the words before it. Both become the help.
     pub elsewhere: Option<(String, At)>,
     /// What was expected, for programs; the message contains it, too.
     pub expected: Option<String>,
-    /// What was found, for programs, if the message compares it with what was expected.
+    /// The found value, for programs, if the message compares it with the expected one.
     pub found: Option<String>,
     /// The nearest known name, for programs; the help contains it, too.
     pub nearest: Option<String>,
-    /// Key that equal problems in several lines share; `None`: the message is the key.
+    /// Key that equal problems in several lines share. With `None`, the message is the key.
     pub same: Option<String>,
-    /// Names of the data one of which is probably wrong; empty: what is underlined.
+    /// Names of data, one of which is probably wrong. Empty if it is the underlined text.
     pub data: Vec<String>,
 }
 
@@ -85,7 +85,7 @@ impl Problem {
         Self { expected: Some(expected), found: Some(found), ..Self::of_entry(code, entry, message) }
     }
 
-    /// Adds the nearest of the known names, if one is near.
+    /// Adds the nearest of the known names, if one is similar.
     #[must_use]
     pub fn near(mut self, wanted: &str, known: &[&str]) -> Self {
         if let Some(name) = nearest(wanted, known.iter().copied()) {
@@ -217,14 +217,14 @@ impl Problems {
         }
     }
 
-    /// Sets the data one of which is probably the reason of the last problem.
+    /// Sets the names of the data, one of which is probably the cause of the last problem.
     pub fn about(&mut self, data: Vec<String>) {
         if let Some(last) = self.list.last_mut() {
             last.data = data;
         }
     }
 
-    /// Sets what was expected in place of the last problem.
+    /// Sets the expected value of the last problem.
     pub fn expected(&mut self, what: impl Into<String>) {
         if let Some(last) = self.list.last_mut() {
             last.expected = Some(what.into());

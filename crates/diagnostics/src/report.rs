@@ -30,8 +30,8 @@ pub struct Diagnostics {
 }
 
 impl Diagnostic {
-    /// The finding with source frame and colour if `graphical`, for [`os_io::console::drawn`], else as plain text. The
-    /// graphical form is already made for a terminal, as by [`os_io::console::shown`].
+    /// The finding with source frame and colour if `graphical`, otherwise as plain text. [`os_io::console::drawn`]
+    /// prints the graphical form, which needs no [`os_io::console::shown`].
     #[must_use]
     pub fn render(&self, graphical: bool) -> String {
         if !graphical {
@@ -72,13 +72,13 @@ impl Diagnostics {
         Self::new(problems, Places::in_lines(std::slice::from_ref(source)), 0, Vec::new())
     }
 
-    /// A report without a text: for a file that cannot be read, or values that do not come from a file.
+    /// A report for a file that cannot be read, or for values that do not come from a file.
     #[must_use]
     pub fn without_text(problems: Problems) -> Self {
         Self::new(problems, Places::in_lines(&[]), 0, Vec::new())
     }
 
-    /// This report and the findings of another check of one of its sources.
+    /// Adds the findings of another check of one of the report's sources.
     #[must_use]
     pub fn with(mut self, other: Self) -> Self {
         self.diagnostics.extend(other.diagnostics);

@@ -20,7 +20,7 @@ impl Diagnostic {
 }
 
 impl Diagnostics {
-    /// Of equal findings in several reports keep only the first, and name the lines of the others in its help.
+    /// Keep only the first of equal findings in several reports. Its help lists the lines of the others.
     pub fn tell_once(reports: &mut [&mut Self]) {
         let mut lines: HashMap<_, Vec<String>> = HashMap::new();
         for diagnostic in reports.iter().flat_map(|report| &report.diagnostics) {

@@ -27,7 +27,7 @@ pub fn join(path: &str, key: &str) -> Path {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
-/// The path of an element of an array.
+/// The path of an array element.
 #[must_use]
 pub fn element(path: &str, index: usize) -> Path {
     format!("{path}[{index}]")
@@ -57,7 +57,7 @@ pub struct Document<'a> {
     kind: FileKind,
 }
 
-/// Entries whose values do not come from the text.
+/// Paths of the entries that have stand-ins.
 #[derive(Clone, Debug, Default)]
 pub struct StandIns(BTreeSet<Path>);
 
@@ -101,7 +101,7 @@ impl<'a> Document<'a> {
         (Self { source, root, kind }, problems)
     }
 
-    /// Reads a structure. `check` gets it with the stand-ins, and adds problems. Errors: all problems of the text.
+    /// Reads a structure. `check` gets it with the stand-ins, and adds problems. Fails with all problems.
     pub fn load<T: DeserializeOwned>(
         source: &Source,
         kind: FileKind,
@@ -123,7 +123,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The place of a value, of the key of one in several tables, or of the nearest table without such an entry.
+    /// The place of a value; of its key, if the value has several places; or of the nearest existing table.
     #[must_use]
     pub fn place(&self, path: &str) -> At {
         at(&self.source.text, self.bytes(path))
@@ -190,7 +190,7 @@ impl<'a> Document<'a> {
     }
 }
 
-/// The first key of a path, with its value. A key in quotes can contain dots: the longest one that fits is meant.
+/// The first key of a path, with its value. A key in quotes can contain dots, so the longest key that fits is used.
 fn first_key<'t, 'a>(
     table: &'t DeTable<'a>,
     path: &str,
@@ -202,7 +202,7 @@ fn first_key<'t, 'a>(
     fitting.max_by_key(|(key, _)| key.get_ref().len())
 }
 
-/// Tables and arrays of tables can be spread over the text.
+/// False for tables and arrays of tables, which can be spread over the text.
 fn is_in_one_place(value: &DeValue<'_>) -> bool {
     match value {
         DeValue::Table(_) => false,
@@ -220,7 +220,7 @@ impl FileKind {
         format!("0, or a number from {smallest} to {largest} or from -{largest} to -{smallest}")
     }
 
-    /// In problems of numbers out of range, state the positive range only, for those entries that must be `positive`.
+    /// In problems with numbers out of range, state only the positive range for entries in `positive`.
     pub fn above_zero(&self, positive: &BTreeSet<Path>, problems: &mut Problems) {
         let [smallest, largest] = self.magnitudes;
         for problem in problems.iter_mut() {
@@ -233,7 +233,7 @@ impl FileKind {
     }
 }
 
-/// A range of several lines ends at the end of its first line.
+/// A range over several lines is cut at the end of its first line.
 fn at(text: &str, bytes: Range<usize>) -> At {
     let small = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
     let start = (0..=bytes.start.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);

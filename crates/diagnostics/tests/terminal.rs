@@ -1,4 +1,4 @@
-//! A report with colours has no control character of the file in it.
+//! A report with colours contains no control character from the file.
 
 use diagnostics::{At, Diagnostics, Problems, Source};
 

@@ -49,7 +49,7 @@ impl Detail {
                 off_place(memory).map_or(Self::None, Self::Off)
             }
             (_, Fault::Reason(Reason::OffPath)) => memory.t3i.status.left.map_or(Self::None, Self::Left),
-            // RELEASE-TOOL and REMOVE-TOOL of Task end at the drum and move from there to the end-at location.
+            // RELEASE-TOOL and REMOVE-TOOL of Task end at the drum; then the robot moves to the end-at location.
             (ProcessId::Task, Fault::Reason(Reason::NoTrajectory)) if leaves_drum(hws) => {
                 hws.end_at.map_or(Self::None, |to| Self::Pair(Name10::clipped(DRUM), to))
             }

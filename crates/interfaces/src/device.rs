@@ -247,7 +247,7 @@ pub struct MotorCommand {
     pub steps: i32,
 }
 
-/// Health of a group of devices behind field I/O, from best to worst (extension).
+/// Health of a group of devices behind field I/O, in order from best to worst (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Plain)]
 pub enum GroupHealth {
     /// Current words, or no field I/O.

@@ -308,7 +308,7 @@ pub mod pose_range {
     /// Bits of a record number that identify the writer.
     pub const WRITER: u32 = 0xFF00_0000;
 
-    /// The record number after `number` in the same range; generations wrap around after 2^24.
+    /// The record number after `number` in the same range. The numbers wrap around after 2^24.
     #[must_use]
     pub const fn next(writer: u32, number: u32) -> u32 {
         let generation = (number & !WRITER).wrapping_add(1) & !WRITER;

@@ -1,7 +1,7 @@
 //! The control processes, each registered once.
 //!
 //! [`for_each_process!`](crate::for_each_process!) is the only list. It generates [`ProcessId`] and [`CommonMemory`],
-//! and determines the order of everything that goes through all processes.
+//! and determines the order in which all code iterates over the processes.
 
 use rcs_core::{
     Plain,

@@ -1,7 +1,7 @@
 //! The operator's words for keys, switches and emergency stops of the station.
 //!
-//! Jobs, operator requests and completion read the same words ([`following`]). All of it is an extension: the manual
-//! describes the controls (III.3.3, III.6, IV.1, IV.3.3) and has no lines for them.
+//! Jobs, operator requests and completion read the same words ([`following`]). All words are extensions. The manual
+//! describes the controls (III.3.3, III.6, IV.1, IV.3.3) but has no lines for them.
 
 mod action;
 

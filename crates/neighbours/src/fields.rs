@@ -61,7 +61,7 @@ pub struct RangeError {
     pub found: i32,
 }
 
-/// Four bytes of the controller to the manual's two. 1 follows 65535, because 0 means no command.
+/// Reduces the controller's four bytes to the manual's two. 1 follows 65535, because 0 means no command.
 #[must_use]
 pub fn command_number(number: u32) -> u16 {
     let wrapped = number.checked_sub(1).map_or(0, |before| before % u32::from(u16::MAX) + 1);

@@ -78,7 +78,7 @@ impl fmt::Display for Place {
 
 pub const MAX_SIZE: usize = 4096; // bytes
 
-/// The data that a process writes or has read. Writing and copying do not allocate.
+/// A mailbox that a process writes or has read. Writing and copying do not allocate.
 #[derive(Debug)]
 pub struct Mailbox {
     place: Place,
@@ -110,7 +110,7 @@ impl PartialEq for Mailbox {
 impl Eq for Mailbox {}
 
 impl Mailbox {
-    /// IX: length word, zeros, no data.
+    /// A mailbox with a length word, zeros and no data (IX).
     #[must_use]
     pub fn initialized(place: Place) -> Self {
         let mut mailbox = Self { place, bytes: [0; MAX_SIZE] };
@@ -123,12 +123,12 @@ impl Mailbox {
         self.place
     }
 
-    /// IX: no data, mailgram number 0.
+    /// Removes the data and sets the mailgram number to 0 (IX).
     pub fn initialize(&mut self) {
         *self = Self::initialized(self.place);
     }
 
-    /// Errors: the size or the length word is wrong.
+    /// Fails if the size or the length word is wrong.
     pub fn from_image(place: Place, image: &[u8]) -> Result<Self, MailboxError> {
         if image.len() != place.size {
             return Err(MailboxError::Size { mailbox: place, found: image.len() });
@@ -143,7 +143,7 @@ impl Mailbox {
         }
     }
 
-    /// Copies received head and data. An error leaves the mailbox unchanged: [`MailboxError::Length`].
+    /// Copies received head and data. After [`MailboxError::Length`] the mailbox is unchanged.
     pub fn receive(&mut self, used: &[u8]) -> Result<(), MailboxError> {
         let found = used.first_chunk().map_or(0, |word| u16::from_le_bytes(*word));
         let legal = (HEAD..=self.place.size).contains(&used.len()) && used.len() == usize::from(found);

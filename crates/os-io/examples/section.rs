@@ -1,5 +1,5 @@
-//! One loop of a tick keeps its buffer, the other allocates and is detected: `cargo run --release -p os-io --example
-//! section`.
+//! One loop reuses its buffer; the other allocates in each tick and is detected: `cargo run --release -p os-io
+//! --example section`.
 
 #![expect(clippy::print_stdout, reason = "an example prints what it does")]
 

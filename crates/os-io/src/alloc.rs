@@ -15,7 +15,7 @@ use std::{
 static IN_SECTIONS: AtomicU64 = AtomicU64::new(0);
 
 thread_local! {
-    // Constant initialisation and no destructor: an access never allocates, at any time of a thread's life.
+    // Because of the constant initialisation without a destructor, an access never allocates.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
 }
 
@@ -30,7 +30,7 @@ thread_local! {
 /// ```
 pub struct Counting;
 
-/// While it lives, allocations of this thread are counted.
+/// While a section exists, the allocations of its thread are counted.
 pub struct Section {
     not_send: PhantomData<*const ()>, // it belongs to the thread that entered it
 }
@@ -50,7 +50,7 @@ impl Drop for Section {
     }
 }
 
-/// Allocations inside sections, of all threads. Without [`Counting`] it stays 0: check [`is_installed`] first.
+/// Number of allocations inside sections of all threads. Without [`Counting`] ([`is_installed`]) it stays 0.
 #[must_use]
 pub fn allocations() -> u64 {
     IN_SECTIONS.load(Ordering::Relaxed)
@@ -95,7 +95,7 @@ unsafe impl GlobalAlloc for Counting {
 
     unsafe fn realloc(&self, block: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
         count();
-        // SAFETY: `block` came from `System`, with `layout`; the caller vouches for the rest.
+        // SAFETY: `block` came from `System`, with `layout`; the caller guarantees the rest.
         unsafe { System.realloc(block, layout, new_size) }
     }
 

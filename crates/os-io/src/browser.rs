@@ -7,17 +7,17 @@ use std::{
     thread,
 };
 
-/// Opens a file or an address as the desktop is set up.
+/// Command that opens a file or an address with the desktop's default program.
 const OPENER: &str = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
 
-/// Starts the browser and does not wait for it. Other users can see the address in the list of processes: no secrets.
+/// Starts the browser without waiting for it. The address must hold no secret, because other users can see it.
 pub fn open(what: &OsStr) -> io::Result<()> {
     let mut program = Command::new(OPENER);
     let program = program.arg(what).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     let mut child = program
         .spawn()
         .map_err(|error| io::Error::new(error.kind(), format!("{OPENER} cannot be started: {error}")))?;
-    // Without a waiting thread, an ended child stays in the list of processes.
+    // Without a thread that waits for it, an ended child would stay in the process list.
     thread::spawn(move || child.wait());
     Ok(())
 }

@@ -8,8 +8,8 @@
 //! | an answer for programs | [`json`] | likewise | an error |
 //!
 //! [`shown`] replaces control characters ([`crate::text`]) and converts quantities to the person's units
-//! ([`crate::units`]). A report drawn with colours has passed it before: [`drawn`] and [`stderr_drawn`] write it as it
-//! is.
+//! ([`crate::units`]). A report drawn with colours is already converted, so [`drawn`] and [`stderr_drawn`] write it
+//! unchanged.
 
 use std::{
     borrow::Cow,
@@ -40,7 +40,7 @@ macro_rules! stdout_line {
 
 /// Function behind [`stderr_line!`](crate::stderr_line).
 pub fn stderr_line(message: Arguments<'_>) {
-    // Nowhere is left to report the error to.
+    // The error cannot be reported anywhere.
     let _ = line(&mut io::stderr().lock(), &shown(&message.to_string()));
 }
 
@@ -85,7 +85,7 @@ pub fn json(text: &str) -> io::Result<()> {
     drawn(&escaped_json(text))
 }
 
-/// Such as a terminal, but no file.
+/// True for a device, such as a terminal, and false for a file.
 fn is_device() -> bool {
     let file = io::stdout().as_fd().try_clone_to_owned().map(File::from);
     file.and_then(|file| file.metadata()).is_ok_and(|found| found.file_type().is_char_device())

@@ -13,11 +13,11 @@ use rustix::fs::OFlags;
 
 use crate::carried;
 
-/// Greatest length of a text file, bytes: task data, jobs, cell descriptions and fault plans have some kilobytes.
+/// Greatest length of a text file, bytes. Task data, jobs, cell descriptions and fault plans need some kilobytes.
 pub const TEXT: u64 = 16 << 20;
 
-/// Reads a regular file of at most `limit` bytes, without blocking. Errors of its own: [`ErrorKind::InvalidInput`] for
-/// other files, [`ErrorKind::FileTooLarge`], [`ErrorKind::OutOfMemory`].
+/// Reads a regular file of at most `limit` bytes, without blocking. Fails with [`ErrorKind::InvalidInput`] for other
+/// files, [`ErrorKind::FileTooLarge`], [`ErrorKind::OutOfMemory`].
 pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     if let Some(inside) = carried::inside(path) {
         let bytes = carried::read(inside)?;
@@ -28,7 +28,7 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let length = file.metadata()?.len();
     let mut bytes = Vec::new();
     if length <= limit {
-        // One more than the limit: the file can grow during the read.
+        // One byte more than the limit shows whether the file has grown during the read.
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
     }
     within(bytes.len().max(usize::try_from(length).unwrap_or(usize::MAX)), limit)?;
@@ -78,8 +78,8 @@ pub fn list(directory: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Reads at most [`TEXT`] bytes of UTF-8; the byte order mark is optional, lines end with LF, CR LF or CR. Errors: as
-/// [`read`], and [`ErrorKind::InvalidData`] with the first line that is not UTF-8.
+/// Reads at most [`TEXT`] bytes of UTF-8; the byte order mark is optional, lines end with LF, CR LF or CR. Fails like
+/// [`read`], and with [`ErrorKind::InvalidData`] that names the first line that is not UTF-8.
 pub fn read_text(path: &Path) -> io::Result<String> {
     let text = String::from_utf8(read(path, TEXT)?).map_err(|error| {
         let good = error.as_bytes().get(..error.utf8_error().valid_up_to()).unwrap_or_default();
@@ -91,9 +91,9 @@ pub fn read_text(path: &Path) -> io::Result<String> {
     Ok(if text.contains('\n') { text.to_owned() } else { text.replace('\r', "\n") })
 }
 
-/// Opens a regular file for reading. Errors: as [`read`].
+/// Opens a regular file for reading. Fails like [`read`].
 pub fn open(path: &Path) -> io::Result<File> {
-    // Opening some devices has side effects: checked first, and again afterwards, because the kind can change.
+    // The kind is checked before opening, which has side effects on some devices, and again afterwards.
     expect_regular(fs::metadata(path)?.file_type())?;
     let flags = OFlags::NONBLOCK | OFlags::NOCTTY;
     let file = OpenOptions::new().read(true).custom_flags(flags.bits().cast_signed()).open(path)?;
@@ -101,7 +101,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Opens a regular file for writing and creates it if it does not exist. Does not truncate it. Errors: as [`read`].
+/// Opens a regular file for writing and creates it if it does not exist. Does not truncate it. Fails like [`read`].
 pub fn create(path: &Path) -> io::Result<File> {
     match fs::metadata(path) {
         Ok(found) => expect_regular(found.file_type())?,
@@ -116,7 +116,7 @@ pub fn create(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Returns an error for everything but a regular file. Errors: [`ErrorKind::InvalidInput`] with the kind found.
+/// Fails for everything but a regular file, with [`ErrorKind::InvalidInput`] and the kind found.
 pub fn expect_regular(kind: FileType) -> io::Result<()> {
     let found = match kind {
         kind if kind.is_file() => return Ok(()),

@@ -7,7 +7,7 @@
 //! | any other file | [`replace`] |
 //!
 //! The last two write a temporary file in the same directory, with mode and owner of the old file, synchronise it with
-//! the disk, and rename it. Of a symbolic link the target is replaced.
+//! the disk, and rename it. For a symbolic link, they replace its target.
 
 use std::{
     fs::{self, File, Metadata, OpenOptions},
@@ -63,8 +63,8 @@ impl Format {
     }
 }
 
-/// Checks that the output of a command replaces no input and no file of another format. Errors:
-/// [`ErrorKind::InvalidInput`] for an input (same device and inode) or a file that is not regular;
+/// Checks that the output of a command replaces no input and no file of another format. Fails with
+/// [`ErrorKind::InvalidInput`] for an input (same device and inode) or a file that is not regular, and with
 /// [`ErrorKind::AlreadyExists`] for another format.
 pub fn check_output<'a>(
     path: &Path,
@@ -75,7 +75,7 @@ pub fn check_output<'a>(
     keep_others(path, format)
 }
 
-/// Refuses an input as output, by device and inode, or by place if a file does not exist.
+/// Refuses an output that is an input. Compares device and inode, or the paths if a file does not exist.
 fn keep_inputs<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> io::Result<()> {
     let identity = |path: &Path| fs::metadata(path).ok().map(|found| (found.dev(), found.ino()));
     let is_output = |input: &&Path| match (identity(output), identity(input)) {
@@ -91,13 +91,13 @@ fn keep_inputs<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>) ->
     }
 }
 
-/// Its directory without links, and its name. `None` without the directory.
+/// The path with its directory resolved. `None` if the directory does not exist.
 fn place_of(path: &Path) -> Option<PathBuf> {
     let directory = path.parent().filter(|directory| !directory.as_os_str().is_empty());
     Some(fs::canonicalize(directory.unwrap_or(Path::new("."))).ok()?.join(path.file_name()?))
 }
 
-/// An empty file is of every format.
+/// Refuses to replace a file of another format. An empty file has every format.
 fn keep_others(output: &Path, format: Format) -> io::Result<()> {
     let file = match files::open(output) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -115,7 +115,7 @@ fn keep_others(output: &Path, format: Format) -> io::Result<()> {
     Err(io::Error::new(ErrorKind::AlreadyExists, why))
 }
 
-/// Replaces a file by a text with LF; line ends and byte order mark stay. Errors: as [`replace`], and of reading.
+/// Replaces a file's text, but keeps its line ends and byte order mark. `text` has LF. Fails like [`replace`].
 pub fn replace_text(path: &Path, text: &str) -> io::Result<()> {
     let before = match files::read(path, files::TEXT) {
         Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
@@ -126,7 +126,7 @@ pub fn replace_text(path: &Path, text: &str) -> io::Result<()> {
     replace(path, format!("{mark}{}", text.replace('\n', line_end(&before))).as_bytes())
 }
 
-/// LF, CR LF or CR, of the first line.
+/// The line end of the first line: LF, CR LF or CR.
 fn line_end(text: &[u8]) -> &'static str {
     let mut bytes = text.iter();
     match bytes.find(|byte| matches!(byte, b'\n' | b'\r')) {
@@ -165,7 +165,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
 
 /// Writes a file with mode and owner of the old one, synchronised with the disk.
 fn write_new(path: &Path, bytes: &[u8], old: Option<&Metadata>) -> io::Result<()> {
-    // A killed process with the same number may have left it.
+    // A killed process with the same number may have left the temporary file.
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
         _ => {}
@@ -255,7 +255,7 @@ mod tests {
         let file = place.path().join("file");
         fs::write(&file, "old").unwrap();
         let temporary = place.path().join(format!(".file.{}.new", process::id()));
-        // A directory in the place of the temporary file makes the write fail for every user.
+        // A directory with the temporary file's name makes the write fail for every user.
         fs::create_dir(&temporary).unwrap();
         replace(&file, b"new").unwrap_err();
         assert_eq!(fs::read(&file).unwrap(), b"old");

@@ -1,4 +1,4 @@
-//! Text without control characters: an escape sequence in a log or job could command the reader's terminal.
+//! Text without control characters: an escape sequence in a log or job could control the reader's terminal.
 
 use std::{borrow::Cow, fmt::Display};
 

@@ -40,7 +40,7 @@ impl Units {
         MILLIMETRES.store(self == Self::Millimetres, Ordering::Relaxed);
     }
 
-    /// A typed length, in inches: in these units, or with its own, `38.1mm` or `1.5in`. Errors: what was expected.
+    /// Parses a length in these units, or its own (`38.1mm`), and returns inches. The error states the expected form.
     pub fn length(self, text: &str) -> Result<f64, String> {
         let wrong = || {
             let [inches, millimetres] = Self::WORDS;
@@ -102,7 +102,7 @@ struct Unit {
     other: &'static str,
     factor: f64,
     digits: isize, // in addition to those of the number in the manual's unit
-    /// A number without a point is a quantity, too. `in` is also a preposition: "2 in the log" is none.
+    /// True if a number without a point is a quantity, too. "2 in the log" is none, because `in` is also a preposition.
     whole: bool,
 }
 
@@ -123,7 +123,7 @@ struct Number {
     digits: Option<usize>, // after the point; `None` without one
 }
 
-/// Only those that are words of their own.
+/// The numbers that are separate words.
 fn numbers(text: &str) -> Vec<Number> {
     let (bytes, mut found, mut at) = (text.as_bytes(), Vec::new(), 0);
     let digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
@@ -148,7 +148,7 @@ fn numbers(text: &str) -> Vec<Number> {
             digits = Some(at - point - 1);
         }
         let before = |at: usize| at.checked_sub(1);
-        // A sign belongs to the number unless it joins it to a word, as in UNIT-1.
+        // A sign belongs to the number, except where it joins number and word, as in UNIT-1.
         let sign = before(first).filter(|at| matches!(bytes[*at], b'-' | b'+'));
         let is_joined = |at: usize| before(at).is_some_and(|at| word(at) || bytes[at] == b'-');
         let start = sign.unwrap_or(first);
@@ -182,7 +182,7 @@ fn in_millimetres(text: &str) -> Cow<'_, str> {
             units[at] = None;
             continue;
         }
-        // The numbers before it that share its unit have as many digits.
+        // The preceding numbers that share its unit get as many digits.
         let Some(before) = at.checked_sub(1) else { continue };
         let between = text.get(numbers[before].end..numbers[at].start).unwrap_or_default();
         let is_listed = BETWEEN.contains(&between.trim_matches(' '));
@@ -202,7 +202,7 @@ fn in_millimetres(text: &str) -> Cow<'_, str> {
         let digits = number.digits.unwrap_or(0).saturating_add_signed(unit.digits);
         let sign = if written.starts_with('+') { "+" } else { "" };
         let converted = format!("{sign}{:.digits$}", value * unit.factor + 0.0);
-        // Columns keep their places: a longer number takes blanks before it, a shorter one leaves some.
+        // Columns keep their positions: a longer number replaces blanks before it, a shorter one adds blanks.
         for _ in written.len()..converted.len() {
             if out.ends_with("  ") {
                 out.pop();

@@ -1,4 +1,4 @@
-// Drives Chromium over a pipe, by its DevTools protocol. It needs Node only.
+// Drives Chromium over a pipe, by its DevTools protocol. It needs only Node.
 
 import { spawn } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
@@ -118,7 +118,7 @@ export class Page {
     return result.value;
   }
 
-  /** Wait until an expression is true; fails with what the page shows. */
+  /** Wait until an expression is true; fails with the text of the page. */
   async until(expression, patience = PATIENCE) {
     const end = Date.now() + patience;
     for (;;) {

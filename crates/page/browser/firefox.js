@@ -13,7 +13,7 @@ export class Firefox {
   static async start(program) {
     const firefox = new Firefox();
     firefox.home = mkdtempSync(join(tmpdir(), 'firefox-'));
-    // A list of drivers keeps WebGL from machines without a graphics processor.
+    // Firefox blocks WebGL on machines without a graphics processor by a list of drivers.
     writeFileSync(join(firefox.home, 'user.js'), 'user_pref("webgl.force-enabled", true);\n');
     const options = ['--no-remote', '--profile', firefox.home, '--remote-debugging-port', '0', 'about:blank'];
     const headless = process.env.DISPLAY ? [] : ['--headless'];
@@ -73,7 +73,7 @@ export class Firefox {
     return result.value;
   }
 
-  /** Wait until an expression is true; fails with what the page shows. */
+  /** Wait until an expression is true; fails with the text of the page. */
   async until(expression) {
     for (const end = Date.now() + PATIENCE; (await this.text(`Boolean(${expression})`)) !== 'true';) {
       if (Date.now() > end)

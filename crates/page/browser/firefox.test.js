@@ -1,6 +1,6 @@
 // The page of a failed run in Firefox: `node --experimental-websocket --test crates/page/browser`. FIREFOX names
-// the browser; without it there is nothing to test. The robot is looked for only with a display (xvfb-run is enough):
-// without one Firefox has no WebGL2 on machines without a graphics processor.
+// the browser; without it the test is skipped. The robot is tested only with a display (xvfb-run is enough), because
+// without a display Firefox needs a graphics processor for WebGL2.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';

@@ -1,4 +1,4 @@
-// Logs whose contents are meant to do harm: no script of them runs, and the page is never blank.
+// Malicious logs: none of their scripts runs, and the page is never blank.
 //
 // RCS_PROGRAMS names the directory of the programs, CHROMIUM the browser.
 
@@ -39,7 +39,7 @@ after(async () => {
   rmSync(scratch, { recursive: true, force: true });
 });
 
-/** The log with other contents of its chunks and files. */
+/** The log with changed contents of its chunks and files. */
 function changed(change) {
   const parts = [log.subarray(0, MAGIC)];
   const put = (code, body) => {
@@ -58,7 +58,7 @@ function changed(change) {
     const body = log.subarray(at + 9, at + 9 + Number(log.readBigUInt64LE(at + 1)));
     at += 9 + body.length;
     if (code === CODE.chunk) {
-      // Times, size, checksum, name of the compression, data.
+      // The header has times, size, checksum, and the name of the compression; the data follow.
       const names = 32 + body.readUInt32LE(28);
       const data = change(inflateSync(body.subarray(names + 8)), '');
       const head = Buffer.from(body.subarray(0, names));
@@ -75,19 +75,19 @@ function changed(change) {
   return Buffer.concat([...parts, log.subarray(0, MAGIC)]);
 }
 
-/** Replace a text by one of the same length, in bytes that may be anything. */
+/** Replace a text by one of the same length, in arbitrary bytes. */
 function replaced(data, from, to) {
   assert.equal(from.length, to.length);
   return Buffer.from(data.toString('latin1').replaceAll(from, to), 'latin1');
 }
 
-/** Open a page with another log inside; returns it when it shows something. */
+/** Open a page with another log inside; returns the page when it shows something. */
 async function open(name, bytes) {
   const begin = page.indexOf(BEGIN) + BEGIN.length;
   const file = join(scratch, name);
   const text = page.slice(0, begin) + bytes.toString('base64') + page.slice(page.indexOf('<', begin));
   writeFileSync(file, text, 'latin1');
-  // A small picture: it is drawn without a graphics processor.
+  // The picture is small, because it is drawn without a graphics processor.
   const opened = await browser.open(`file://${file}`, { width: 1200, height: 600 });
   await opened.until(
     `document.querySelector('.state b')?.innerText || document.querySelector('.notice h1')?.innerText`,
@@ -95,7 +95,7 @@ async function open(name, bytes) {
   return opened;
 }
 
-/** No element of a text of the log is in the page, and nothing of it has run. */
+/** Checks that the page has no element from a text of the log, and that no script of the log has run. */
 async function isHarmless(opened) {
   assert.equal(
     await opened.value(`document.querySelectorAll('img[src="x"], script[src], iframe').length`),
@@ -164,7 +164,7 @@ test('numbers_that_are_none_leave_the_page_usable', async () => {
 });
 
 test('damaged_log_shows_what_is_wrong', async () => {
-  // Every message that has a text loses its lengths.
+  // The lengths in every message with a text are removed.
   const opened = await open(
     'damaged.html',
     changed((data, name) => (name ? data : replaced(data, 'LINKBAR1_BH', '\xff'.repeat(11)))),

@@ -1,4 +1,4 @@
-// The page in Chromium, beside runs and on logs: `node --test crates/page/browser`, after a release build.
+// The page in Chromium, for runs in progress and for logs: `node --test crates/page/browser`, after a release build.
 //
 // RCS_PROGRAMS names the directory of the programs, CHROMIUM the browser.
 
@@ -171,7 +171,7 @@ const COUNT_CALLS = `{
   }
 }`;
 
-/** Notes when the page shows that the connection is lost. */
+/** Records the time when the page shows a lost connection. */
 const WATCH_LOSS = `{
   window.lostAt = 0;
   const observer = new MutationObserver(() => {
@@ -186,7 +186,7 @@ test('lost_connection_shows_within_a_second_and_comes_back', async (t) => {
   const live = await Live.start();
   const page = await browser.open(`${live.address}#view=operate&token=${live.token}`);
   await page.until(`document.querySelector('.large.stop')`);
-  // The least of three: a machine that is busy with other things is no fault of the page.
+  // The least of three times counts, because other load on the machine is no fault of the page.
   const times = [];
   for (let run = 0; run < 3; run++) {
     if (run > 0) {
@@ -243,7 +243,7 @@ test('failed_run_shows_what_its_processes_report', async () => {
     height: 600,
   });
   await page.until(`document.querySelector('.large.stop')`);
-  // The job waits for an operator instead of failing; a viewer is one from its first request.
+  // The job waits for an operator instead of failing. A viewer becomes an operator with its first request.
   await page.value(`document.getElementById('line').focus()`);
   await page.type('note an operator is here');
   await page.key('Enter', 'Enter', 13);
@@ -258,7 +258,7 @@ test('failed_run_shows_what_its_processes_report', async () => {
 });
 
 test('ten_pages_beside_a_run_change_no_bit', async () => {
-  // Ten pages on few processors can cost slots of the grid, which stop the robot by default.
+  // Ten pages on few processors can cause missed slots of the grid, which stop the robot by default.
   const ticks = ['--ticks', '400', '--json', '--operator', 'none', '--overrun', 'count'];
   const alone = spawnSync(
     join(PROGRAMS, 'rcs-run'),

@@ -1,8 +1,8 @@
 //! Joins the sources of the page into one HTML file.
 //!
-//! Modules cannot be imported from `file://`, so they become one script: each is a function that returns its exports,
-//! in the order of dependence. The sources keep to a form that needs no parser: an import names its bindings in braces
-//! and a file of the same directory, a declaration is exported where it is made, and no export changes later.
+//! Modules cannot be imported from `file://`, so they become one script of functions in the order of dependence. Each
+//! function returns its module's exports. The form of the sources needs no parser: an import names its bindings in
+//! braces and a file of the same directory, a declaration is exported where it is made, and no export changes later.
 //! [`bundle`] refuses other sources, and so do the tests.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,7 +12,7 @@ use sha2::{Digest as _, Sha256};
 
 const INDEX: &str = include_str!("../web/index.html"); // the file that the browser reads first
 const START: &str = "app.js"; // the module that starts the page
-/// The part of [`INDEX`] that loads style and modules while the page is developed.
+/// The part of [`INDEX`] that loads style and modules during development.
 const LINKS: &str =
     "<link rel=\"stylesheet\" href=\"style.css\">\n<script type=\"module\" src=\"app.js\"></script>";
 
@@ -95,14 +95,14 @@ pub enum Content<'a> {
 
 /// The page as one file, with a packed log or the start of a run inside.
 ///
-/// The file permits itself this one script, independent of the texts of the log. With a log it loads nothing; with a run
-/// it connects to its own server only.
+/// The file permits only this script, which does not depend on the texts of the log. With a log it loads nothing. With
+/// a run it connects only to its own server.
 #[must_use]
 pub fn document(title: &str, content: Content<'_>) -> String {
     let style: String = STYLES.iter().map(|(_, text)| compact(text)).collect();
     let script = match bundle(MODULES, START) {
         Ok(script) => harmless(&script),
-        // The tests bundle the same sources, so that no program has this.
+        // The tests bundle the same sources, so this error reaches no released program.
         Err(error) => format!("document.body.textContent = {error:?};"),
     };
     let (id, data, from) = match content {
@@ -126,7 +126,7 @@ pub fn document(title: &str, content: Content<'_>) -> String {
         .replace("</body>", &body)
 }
 
-/// Joins modules into one script that starts with `start`. Errors: the module and its unexpected line.
+/// Joins modules into one script that starts with `start`. The error names the module and its unexpected line.
 pub fn bundle(modules: &[(&str, &str)], start: &str) -> Result<String, String> {
     let known: BTreeMap<&str, &str> = modules.iter().map(|(path, text)| (file_name(path), *text)).collect();
     if known.len() != modules.len() {
@@ -165,7 +165,7 @@ fn append(
         module.imports.iter().map(|(names, from)| format!("const {{{names}}} = {}();\n", getter(from)));
     let imports: String = imports.collect();
     let exports = module.exports.join(", ");
-    // A module is run at its place in the order, once.
+    // Each module runs once, at its place in the order.
     script.push_str(&format!(
         "const {getter} = ((exports) => () => exports)((() => {{\n{imports}{body}return {{ {exports} }};\n}})());\n",
         getter = getter(name),
@@ -204,7 +204,7 @@ impl Module {
         Ok(module)
     }
 
-    /// A line without the word `export`; its name is noted.
+    /// Removes the word `export` from a line and stores the exported name.
     fn exported<'a>(&mut self, line: &'a str) -> Result<&'a str, String> {
         let Some(declaration) = line.strip_prefix("export ") else { return Ok(line) };
         let kinds = ["async function* ", "async function ", "function* ", "function ", "class ", "const "];
@@ -225,7 +225,7 @@ impl Module {
 fn import(statement: &str) -> Option<(String, String)> {
     let (names, rest) = statement.strip_prefix("import {")?.split_once('}')?;
     let path = rest.trim().strip_prefix("from '")?.strip_suffix("';")?;
-    // A binding with another name would need another word in the script.
+    // A renamed binding would need other code in the script.
     (path.starts_with('.') && !names.contains(" as ")).then(|| (names.to_owned(), file_name(path).to_owned()))
 }
 
@@ -238,8 +238,8 @@ fn getter(file: &str) -> String {
     format!("module_{}", stem.replace('-', "_"))
 }
 
-/// Removes comments, indentation and empty lines. `/*` begins a comment wherever it stands, and a text over several
-/// lines loses its indentation; the sources have neither where it matters.
+/// Removes comments, indentation and empty lines. Every `/*` begins a comment, and a text over several lines loses its
+/// indentation. The sources have neither where it matters.
 fn compact(source: &str) -> String {
     let mut code = String::with_capacity(source.len());
     let mut rest = source;
@@ -252,7 +252,7 @@ fn compact(source: &str) -> String {
     lines.flat_map(|line| [line, "\n"]).collect()
 }
 
-/// A script without the text that would end its element.
+/// The script without texts that would end its element.
 fn harmless(script: &str) -> String {
     script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
 }
@@ -317,7 +317,7 @@ mod tests {
         assert!(!script.contains("\nimport ") && !script.contains("\nexport "));
     }
 
-    /// Paths of the files of the page that end with a text, but for the tests.
+    /// Paths of the page's files with this ending, except tests.
     fn files(directory: &Path, ending: &str, found: &mut BTreeSet<String>) {
         for entry in fs::read_dir(directory).unwrap() {
             let path = entry.unwrap().path();

@@ -4,9 +4,9 @@
 //! program that shows a run serves or writes the same page. Browsers do not load modules from `file://`, so
 //! [`document`] writes style, modules and log into one HTML file ([`inline`]).
 //!
-//! Browsers cannot decompress zstd everywhere. [`pack`] copies a log with deflate, which all of them have, sorted by
-//! channel, and without the channels that the page does not show. The decision tables, and the reasons with their remedies,
-//! are those of the log.
+//! Not every browser can decompress zstd. [`pack`] copies a log with deflate, which all browsers have, sorted by
+//! channel, and without the channels that the page does not show. The decision tables, and the reasons with their
+//! remedies, are those of the log.
 
 mod inline;
 mod pack;

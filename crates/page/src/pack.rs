@@ -1,9 +1,9 @@
 //! Copies a log into the form that the page reads: an MCAP file that every browser can decompress.
 //!
 //! The copy differs from the log in four ways. Its chunks are compressed with zlib's deflate, which browsers have. A
-//! chunk has messages of one channel only: similar messages compress to a third, and the page decompresses a channel
-//! when it is shown. Channels and attachments that the page does not read are left out, `/replay` among them, so the
-//! copy cannot be replayed. Attachments that only a program can make are added.
+//! chunk has messages of one channel only. So similar messages compress to a third, and the page decompresses a channel
+//! only to show it. Channels and attachments that the page does not read are left out. One is `/replay`, so the copy
+//! cannot be replayed. Attachments that only a program can make are added.
 //!
 //! The order of the messages of a channel, their times and their sequence numbers (the tick) stay as they are.
 
@@ -20,12 +20,12 @@ use record::{
     tap::{Channel, Tap},
 };
 
-/// Topics that the page does not read: bytes for programs, and what it computes from other topics.
+/// Topics that the page does not read: bytes for programs, and data that the page computes from other topics.
 const LEFT_OUT: [&str; 6] = [REPLAY, "/trail", "/t3i/link_tx", "/robot_description", LADDER, INSTRUMENTS];
 const KEPT: [&str; 2] = [Attachment::JOB, "faults.toml"];
 /// Size at which a chunk is closed, bytes before compression.
 const CHUNK: usize = 1 << 20;
-/// Name of the compression in the chunks. It is not among the names of the MCAP specification.
+/// Name of the compression in the chunks. The MCAP specification does not define it.
 const COMPRESSION: &str = "deflate";
 /// End of the names of attachments, which are compressed in the same way.
 const DEFLATED: &str = ".deflate";
@@ -62,8 +62,8 @@ pub fn pack(log: &Log, added: &[Attachment]) -> Vec<u8> {
     finish(out)
 }
 
-/// Data of a run before its first message: its metadata and files, with further ones. The messages
-/// arrive over the live view.
+/// Data of a run before its first message: metadata, files, and further attachments. The messages arrive over the live
+/// view.
 #[must_use]
 pub fn pack_start(
     run: &BTreeMap<String, String>,
@@ -208,7 +208,7 @@ fn write_chunk(channel: u16, (start, end): (u64, u64), records: &[u8], out: &mut
         number64(compressed.len() as u64, body);
         body.extend_from_slice(&compressed);
     });
-    // The index says only which channel the chunk has; the page reads all messages of a chunk.
+    // The index only names the channel of the chunk, because the page reads all messages of a chunk.
     record(code::MESSAGE_INDEX, out, |body| {
         number16(channel, body);
         number32(0, body);

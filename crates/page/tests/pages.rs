@@ -1,4 +1,4 @@
-//! A log becomes a page: the copy of the log has the messages and files that the page reads, and can be inflated.
+//! A log becomes a page: the copy of the log has the messages and files that the page reads, and can be decompressed.
 
 use std::{collections::BTreeMap, io::Read as _};
 

@@ -1,4 +1,4 @@
-// The page: finds a log, opens it, and draws what changed.
+// The page: finds a log, opens it, and draws the changes.
 
 import { openLog } from './log/log.js';
 import { LiveLog } from './log/live.js';
@@ -25,9 +25,9 @@ import { why } from './view/why.js';
 
 /** Ticks of a second. */
 const TICKS = 25;
-/** Time between two looks at a run while the page is hidden, milliseconds. */
+/** Interval of reading the messages of a run while the page is hidden, milliseconds. */
 const HIDDEN = 1000;
-/** Topics without which no picture of the cell can be drawn. */
+/** Topics that the picture of the cell needs. */
 const PICTURE = ['/meshes', '/tf', '/tf_static', '/names'];
 
 /** Parts of the page that not every view shows. */
@@ -94,7 +94,7 @@ class Page {
       changed,
     );
     if (this.live) followControls(() => this, changed);
-    // A hidden page gets no frames, but its messages arrive.
+    // A hidden page gets no animation frames, but it still receives messages.
     if (this.live) setInterval(() => document.hidden && this.advance(), HIDDEN);
     addEventListener('resize', changed);
     addEventListener('hashchange', () => {
@@ -122,14 +122,14 @@ class Page {
     });
   }
 
-  /** Large topics come after the first picture. */
+  /** Load the large topics after the first picture. */
   async complete() {
     await this.run.log.load(['/tf', '/joint_states']);
     this.cell = new CellView(this.run);
     this.dirty = true;
   }
 
-  /** Take in what has arrived of a run in progress. */
+  /** Process the messages that have arrived from a run in progress. */
   advance() {
     const { run, ui, live } = this;
     if (!live) return;
@@ -144,7 +144,7 @@ class Page {
       this.dirty = true;
     }
     if (!this.cell && PICTURE.every((topic) => log.series(topic).length > 0)) this.cell = new CellView(run);
-    // The time since the last message is shown.
+    // The page shows the time since the last message, which changes.
     if (live.loss) this.dirty = true;
   }
 
@@ -169,7 +169,7 @@ class Page {
     if (!action || event.ctrlKey || event.metaKey || event.altKey || target.tagName === 'INPUT' || presses)
       return;
     event.preventDefault();
-    // Space stops a robot, and never starts one.
+    // Space stops the robot, and never starts it.
     if (event.key === ' ' && this.live) operate(this, 'stop');
     else this.act(action);
   }
@@ -251,7 +251,7 @@ class Page {
     [app.dataset.view, app.dataset.tab] = [ui.view, ui.tab];
     app.className = this.classes();
     app.setAttribute('aria-busy', 'false');
-    // First what is read of the page, then what is written: each change between two reads costs a layout.
+    // All reads of the page precede all writes, because a read after a write forces a layout.
     const isOpen = new Map(PANES.map((id) => [id, isShown(byId(id))]));
     const pane = byId('table');
     const em = parseFloat(getComputedStyle(root).fontSize) / 14;
@@ -279,7 +279,7 @@ class Page {
     this.dirty = false;
   }
 
-  /** What the page shows, for the style. */
+  /** Classes of the page, by which the style sheet selects what is shown. */
   classes() {
     const { live, ui } = this;
     if (!live) return 'app is-log';
@@ -363,7 +363,7 @@ async function watch(name, bytes) {
   let page = null;
   const live = new Session(log, () => {
     if (!page) return;
-    // A lost connection is shown now, and not in the next frame.
+    // A lost connection is shown at once, not in the next frame.
     if (live.loss) page.draw();
     else page.dirty = true;
   });
@@ -385,7 +385,7 @@ async function watch(name, bytes) {
   begin();
 }
 
-// A page that has failed must not look alive: its frames have ended.
+// A page that has failed draws no more frames, so it must show the error.
 addEventListener('error', ({ error }) => error && fail(error));
 addEventListener('unhandledrejection', ({ reason }) => fail(reason));
 

@@ -1,5 +1,5 @@
-//! Cost of recording: [`Recorder::tick`] in the thread of the ticks, with 1 ms per tick, and [`Recorder::cell`]; and of
-//! a journal whose knowledge changes in every tick, as while the robot moves.
+//! Cost of recording: [`Recorder::tick`] in the thread of the ticks, with 1 ms per tick, and [`Recorder::cell`]. Cost
+//! of a journal whose entry changes in every tick, as while the robot moves.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "figures are what it is for")]
 

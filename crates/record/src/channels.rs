@@ -64,7 +64,7 @@ impl<W: Write + Seek> Output<W> {
     /// Write a message of a tick that was already passed to the tap.
     pub fn write(&mut self, channel_id: u16, tick: Tick, data: &[u8]) -> McapResult<()> {
         let log_time = self.epoch.of(tick);
-        // A tick number needs more than 32 bits after five years.
+        // After five years, a tick number needs more than 32 bits.
         let sequence = u32::try_from(tick.0).unwrap_or(u32::MAX);
         let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
         self.mcap.write_to_known_channel(&header, data)

@@ -35,7 +35,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// `by_name`: compare records by name instead of number, for other task data than those of the log.
+    /// With `by_name`, records are compared by name instead of number, because the task data differ from the log's.
     pub fn new(by_name: bool) -> Self {
         let leaves = |record| {
             let mut leaves = layout::leaves(record);

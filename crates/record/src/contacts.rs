@@ -12,7 +12,7 @@ pub(crate) const INCH: f64 = 0.0254;
 const PERMITTED: (f64, Colour) = (0.03, [0.15, 0.75, 0.30, 0.9]);
 const COLLISION: (f64, Colour) = (0.06, [0.90, 0.10, 0.10, 0.85]);
 const LETTERS: f64 = 0.05; // height of the letters at a collision, m
-/// Height of the letters above the middle of a mark, and distance of those of further collisions above it, m.
+/// Height of a text above the middle of its mark, and distance between the texts of further collisions, m.
 const ABOVE: (f64, f64) = (0.14, 0.07);
 
 /// Append the marks to a `foxglove.SceneUpdate`. `time` in nanoseconds since 1970.

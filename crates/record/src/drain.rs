@@ -55,7 +55,7 @@ impl Drain {
     /// Write until the run has ended. Returns the last log, and the number of earlier ones.
     pub(crate) fn run(mut self) -> Result<(Written, usize), RecordError> {
         loop {
-            // Read before the ring is emptied: entries pushed before the run dropped the producer are still found.
+            // The flag is read before the ring is emptied, so that all entries before the end of the run are found.
             let ended = self.ticks.is_abandoned();
             while let Ok(record) = self.ticks.pop() {
                 if record.tick.0.is_multiple_of(FULL_SET) {
@@ -78,7 +78,7 @@ impl Drain {
         Ok((written, self.rotation.map_or(0, |rotation| rotation.count)))
     }
 
-    /// End a log that has reached its size, and begin the next one with this tick, whose states are recorded.
+    /// End a log that has reached its size, and begin the next log with this tick and its states.
     fn rotate(&mut self, record: &TickRecord) -> Result<TickRecord, RecordError> {
         let Some(rotation) = &mut self.rotation else { return Ok(*record) };
         if !self.log.has_ticks() || self.file.length()? < rotation.limit.bytes {

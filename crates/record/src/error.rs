@@ -69,7 +69,7 @@ pub enum ReadError {
 }
 
 impl ReadError {
-    /// `path` is that of the log. For a missing file, also the nearest name of a log in the directory.
+    /// `path` is the path of the log. For a missing file, the text also names the most similar log in the directory.
     #[must_use]
     pub fn of(&self, path: &Path) -> String {
         let (named, mut text) = (path.display().to_string(), self.to_string());

@@ -19,9 +19,9 @@ pub const REASONS: &str = "reasons.json.zst";
 /// Name of the attachment with the first failure and its consequences; only in the log of a failed run.
 pub const FAILURE: &str = "failure.json";
 
-/// Level of the compression: at 19 the tables are an eighth smaller, and a run starts 0.13 s later.
+/// Level of the compression. At level 19 the tables would be an eighth smaller, but a run would start 0.13 s later.
 const COMPRESSION: i32 = 6;
-/// Greatest size of a decompressed file, bytes, since a damaged one may claim any size.
+/// Greatest size of a decompressed file, bytes. It is limited because a damaged file can state any size.
 const LARGEST: u64 = 16 << 20;
 
 #[must_use]
@@ -52,7 +52,7 @@ pub fn tables() -> Value {
     Ladder::processes().iter().map(process).collect()
 }
 
-/// The remedy by the reasons of a log, or of this program. `None` if PAUSE and the same command may be enough.
+/// The remedy of a reason in a log, or in this program. `None` if PAUSE and the same command may be enough.
 #[must_use]
 pub fn remedy(log: &Log, reason: &str) -> Option<String> {
     let reasons = of_log(log, REASONS).unwrap_or_else(reasons);
@@ -103,7 +103,7 @@ fn step(variant: &VariantSchema) -> Value {
     json!({ "name": variant.name, "doc": prose([variant.doc]), "code": variant.code })
 }
 
-/// A digit of [`rcs_core::table::Variables::code`], also for a variable that no row tests.
+/// A digit of [`rcs_core::table::Variables::code`], even of a variable that no row tests.
 fn digit(variable: &'static Variable) -> Value {
     json!({ "name": variable.name, "values": variable.values.variants.len() })
 }

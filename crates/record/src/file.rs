@@ -21,7 +21,7 @@ pub struct LogFile {
     file: File,
     identity: (u64, u64),
     unused: bool, // true if the file is new, and the log has not begun
-    /// True to rename an earlier log at the path when this one begins, false to replace it.
+    /// True if an earlier log at the path is renamed when this one begins, false if it is replaced.
     keeps_earlier: bool,
 }
 
@@ -122,7 +122,7 @@ impl Drop for LogFile {
     }
 }
 
-/// A name for an earlier log: that of the log with the time in UTC, and a number if that name exists.
+/// A name for an earlier log: the log's name with the time in UTC, and a number if that name exists.
 fn free_name(path: &Path, ended: SystemTime) -> PathBuf {
     let at = OffsetDateTime::from(ended);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();

@@ -18,7 +18,7 @@ pub const MAX_JOINTS: usize = 16;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Epoch {
     /// The beginning of 1987-12-16, the day on which the manual's system was finished: for runs in fast clock, whose
-    /// logs must have the same bytes at any time.
+    /// logs must not depend on the date.
     Fixed,
     /// Nanoseconds since 1970: for runs in real time.
     At(u64),

@@ -18,7 +18,7 @@ pub struct Leaf {
     /// Number of bytes in the image. For an option or a union with other leaves, only the first byte.
     pub size: usize,
     pub schema: &'static Schema,
-    /// Bytes with their value in each image that holds the leaf: flags of options, codes of variants.
+    /// Bytes that must have this value in an image with the leaf: flags of options, codes of variants.
     pub given: Vec<(usize, u8)>,
 }
 
@@ -41,8 +41,8 @@ impl Leaf {
         if self.is_in(image) { value.to_string() } else { reflect::NONE.to_owned() }
     }
 
-    /// True for a record number of the task data. Added data change the numbers of later records but not their meaning,
-    /// so runs with different task data are compared without these fields.
+    /// True for a record number of the task data. Added data change the numbers of later records but not their meaning.
+    /// So runs with different task data are compared without these fields.
     #[must_use]
     pub fn is_record_number(&self) -> bool {
         let number = match self.schema {
@@ -147,7 +147,7 @@ pub fn first_difference<'a>(leaves: &'a [Leaf], was: &[u8], is: &[u8]) -> Option
         return None;
     }
     let differ = |leaf: &&Leaf| leaf.differs(was, is);
-    // Bytes without a value differ only between images that were not encoded.
+    // Bytes outside all values differ only if an image was not encoded.
     leaves.iter().find(differ).or_else(|| leaves.iter().find(|leaf| leaf.bytes(was) != leaf.bytes(is)))
 }
 

@@ -112,7 +112,7 @@ impl Lossless {
         self.second.push((record.tick, data));
     }
 
-    /// Write the messages of a second into a chunk of their own, so that a replay decompresses a seventh of a log.
+    /// Write the messages of a second into a separate chunk, so that a replay decompresses only a seventh of a log.
     pub fn end_second<W: Write + Seek>(&mut self, output: &mut Output<W>) -> McapResult<()> {
         output.mcap.flush()?;
         for (tick, data) in self.second.drain(..) {

@@ -34,7 +34,7 @@ pub enum Before {
 }
 
 impl Log {
-    /// The place of this log in a run that wrote several logs; `None` if it has its run from the first tick on.
+    /// The place of this log in a run that wrote several logs; `None` if the log has all ticks from the first one on.
     #[must_use]
     pub fn part(&self) -> Option<Part> {
         let begin = self.first_tick()?;

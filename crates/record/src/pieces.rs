@@ -4,9 +4,9 @@
 //! record with the right checksum. The total of decompressed bytes, and with it memory and time, is limited. Logs that
 //! other programs have rewritten are also read; damage in a part without a checksum may remain undetected.
 //!
-//! A whole file has at its end the right checksums; its chunks are then decompressed only when read. Otherwise each
-//! chunk must prove by its own checksum that it is readable; all processors check the first chunks ahead. Decompressed
-//! data are not kept: decompressing them again is as fast as fetching them from memory.
+//! A whole file has the right checksums at its end, and its chunks are decompressed only when read. In other files the
+//! checksum of each chunk decides whether it is readable; all processors check the first chunks ahead. Decompressed
+//! data are not kept, because decompressing them again is as fast as reading them from memory.
 
 use std::{collections::BTreeMap, io::Read as _, iter, ops::Range, thread};
 
@@ -20,13 +20,13 @@ use zstd::bulk::Decompressor;
 use crate::names::{END, RUN};
 
 const HEAD: usize = 9; // size of a record's header, bytes: operation code and length
-/// Largest decompressed size of a chunk, bytes: other programs write chunks of some tens of megabytes.
+/// Largest decompressed size of a chunk, bytes. Other programs write chunks of some tens of megabytes.
 const CHUNK: u64 = 64 << 20;
 const LOOSE: usize = 1 << 18; // messages outside chunks are read in parts of about this size, bytes
-/// Largest ratio of decompressed bytes to bytes of the file: the recorder's chunks have a ratio of two to eleven.
+/// Largest ratio of decompressed bytes to bytes of the file. The recorder's chunks have a ratio of two to eleven.
 const EXPANSION: u64 = 64;
 const LEAST: u64 = 64 << 20; // limit of decompressed bytes for small files
-/// Limit of bytes that are checked ahead, of a quarter of an hour. It bounds the memory for channels and schemas.
+/// Limit of bytes that are checked ahead, about a quarter of an hour. It limits the memory for channels and schemas.
 const AHEAD: u64 = 64 << 20;
 const FOOTER: usize = 20; // size of the body of the last record, bytes
 const CHECKSUM: usize = 4; // bytes
@@ -45,7 +45,7 @@ pub enum Damage {
 
 pub enum Piece<'a> {
     Record(Record<'a>),
-    /// A chunk with its channels and schemas, which a whole file has after its data too.
+    /// A chunk with its channels and schemas. A whole file repeats them after its data.
     Chunk(Range<usize>, Vec<Record<'static>>),
     Loose(Range<usize>),
     /// The previous chunk has messages of this channel.
@@ -64,7 +64,7 @@ pub struct Pieces<'a> {
 }
 
 impl<'a> Pieces<'a> {
-    /// The pieces of a file. Fails with [`McapError::BadMagic`] for another beginning than that of MCAP.
+    /// The pieces of a file. Fails with [`McapError::BadMagic`] if the file does not begin like MCAP.
     pub fn new(bytes: &'a [u8]) -> McapResult<Self> {
         if !bytes.starts_with(MAGIC) {
             return Err(McapError::BadMagic);
@@ -107,7 +107,7 @@ impl<'a> Pieces<'a> {
                 return Some((Piece::Loose(at..end), end));
             }
             op::MESSAGE_INDEX => Piece::Index(u16::from_le_bytes(*body.first_chunk()?)),
-            // The last record: after it the file ends with the same magic as at its beginning.
+            // This is the last record. After it the file ends with the magic of its beginning.
             op::FOOTER if self.bytes.get(end..) != Some(MAGIC) => return None,
             op::HEADER..=op::DATA_END => Piece::Record(parse(opcode, body)?),
             _ => return None,
@@ -228,7 +228,7 @@ fn ahead(bytes: &[u8]) -> BTreeMap<usize, Option<Vec<Record<'static>>>> {
         let others: Vec<_> =
             (1..threads).map(|first| scope.spawn(move || check_some(first, threads))).collect();
         let own = check_some(0, threads);
-        // A thread that has panicked leaves its chunks to the reader.
+        // If a thread has panicked, the reader checks its chunks.
         own.into_iter().chain(others.into_iter().flat_map(|other| other.join().unwrap_or_default())).collect()
     })
 }
@@ -399,7 +399,7 @@ impl Decoder {
                 records = &self.records;
             }
             Compression::Lz4 => {
-                // One byte more than the size: a chunk that is longer than stated is damaged.
+                // One byte more than the stated size is read, because a longer chunk is damaged.
                 let limit = u64::try_from(size).ok()?.saturating_add(1);
                 FrameDecoder::new(records).take(limit).read_to_end(&mut self.records).ok()?;
                 records = &self.records;

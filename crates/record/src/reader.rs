@@ -48,7 +48,7 @@ pub struct Log {
     /// Metadata of the end: the ending of the run; `None` if the program was killed.
     pub end: Option<BTreeMap<String, String>>,
     pub attachments: Vec<Attachment>, // in order
-    /// True if the file has its end. Otherwise up to the last second of the run is missing.
+    /// True if the file has its end. Otherwise at most the last second of the run is missing.
     pub complete: bool,
 }
 
@@ -76,7 +76,7 @@ pub struct LogLine {
     pub level: Level,
     pub source: String,
     pub text: String,
-    /// Code of the event, such as `cell.dropped`, or source file of the decision table; empty without both.
+    /// Code of the event, such as `cell.dropped`, or source file of the decision table; empty if there is neither.
     pub code: String,
 }
 
@@ -140,7 +140,7 @@ impl Log {
                 Piece::Record(record) => log.note(&record),
             }
         }
-        // An incomplete record at the end, as a killed program leaves it, is not damage.
+        // A killed program leaves an incomplete record at the end, which is not damage.
         let half = |segment: &mut Segment| matches!(segment, Segment::Damaged(range, Damage::Bytes) if range.end == bytes.len());
         if !log.complete {
             log.segments.pop_if(half);
@@ -315,8 +315,7 @@ impl Log {
         self.items(topic, 0).filter_map(|(_, message)| message)
     }
 
-    /// The messages of a topic from a part on, with their ticks, and `None` at damage; each with the number of its
-    /// part.
+    /// The messages of a topic from a part on, with their ticks, or `None` at damage, and the number of their part.
     fn items(&self, topic: &str, first: usize) -> impl Iterator<Item = Item> + use<'_> {
         let id = self.channels.get(topic).copied();
         let mut decoder = Decoder::default();
@@ -330,7 +329,7 @@ impl Log {
                 }
                 Segment::Chunk(..) | Segment::Loose(_) => {}
             }
-            // Only here it becomes known whether a chunk of a whole file is readable.
+            // A chunk of a whole file is checked only here.
             let Some(messages) = self.messages_in(segment, &mut decoder) else { return vec![(part, None)] };
             let of_topic = messages.filter(|message| Some(message.channel) == id);
             let item = |message: Message<'_>| (Tick(u64::from(message.sequence)), message.data.to_vec());

@@ -30,7 +30,7 @@ use crate::{
     writer::{FULL_SET, LogWriter, TickRecord, Timing, Written},
 };
 
-/// Ticks: 40 s of real time. While the cell is at rest, the writer takes longer for a tick than a run in fast clock.
+/// Capacity in ticks: 40 s of real time. With the cell at rest, the writer is slower than a run in fast clock.
 const RING: usize = 1024;
 const STATE_RING: usize = 64; // capacity of the ring of states, which are written once per second
 const NOTE_RING: usize = 1024;
@@ -48,7 +48,7 @@ pub enum Pace {
     Drop,
 }
 
-/// The longest beginning of a text that fits, in whole characters.
+/// The longest beginning of a text that fits, without splitting a character.
 fn clipped<const N: usize>(text: &str) -> [u8; N] {
     let mut end = text.len().min(N);
     while !text.is_char_boundary(end) {
@@ -214,7 +214,7 @@ impl Recorder {
             return;
         }
         let due = self.last_state.is_none_or(|last| tick.since(last) >= FULL_SET);
-        // The states are pushed first, so that the ring with a tick also has its states.
+        // The states are pushed first, so that they are in their ring before their tick.
         if (due || self.gap > 0)
             && has_room(&self.states, self.pace)
             && self.states.push((tick, state())).is_ok()
@@ -239,7 +239,7 @@ impl Recorder {
         self.ticks.buffer().capacity() - self.ticks.slots()
     }
 
-    /// Wait until everything is written, and end the log. Errors: the error that ended the log before the run.
+    /// Wait until everything is written, and end the log. Fails with the error that ended the log before the run.
     pub fn finish(self, end: End) -> Result<Summary, RecordError> {
         let Self {
             ticks, states, cells, notes, files, operators, shown, lost, path, end: slot, thread, ..

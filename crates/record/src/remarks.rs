@@ -20,7 +20,7 @@ pub struct Remark {
     pub level: Level,
     pub source: String, // a process, the cell, the recorder
     pub text: String,
-    /// Source file of the decision table, or the code of an event such as `cell.dropped`; empty without both.
+    /// Source file of the decision table, or the code of an event such as `cell.dropped`; empty if there is neither.
     pub file: &'static str,
     pub line: u32, // of the decision table in its file, or 0
 }
@@ -132,7 +132,7 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
             say(level, format!("{what}, {is} so far"));
         }
     }
-    // Only the first of a sequence of points: a fast move is limited in every tick.
+    // Only the first limited point is reported, because a fast move is limited in every tick.
     if is.counters.limited > was.counters.limited && before.t3i.header.decided != after.t3i.header.decided {
         say(Level::Info, "the velocity limits hold a point back".to_owned());
     }
@@ -141,7 +141,7 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
 /// The processes whose commands show the progress of the job; commands of the others are details.
 const FOLLOWED: [ProcessId; 3] = [ProcessId::Subtask, ProcessId::Emove, ProcessId::Pedestal];
 
-/// A command on its way down: `-> E-move: GRASP-OBJ LINKBAR1 at PFIXTURE`, except the points to T3I.
+/// A command to a lower process: `-> E-move: GRASP-OBJ LINKBAR1 at PFIXTURE`, except the points to T3I.
 fn down(before: &CommonMemory, after: &CommonMemory, mut say: impl FnMut(Level, &str, String)) {
     for process in ProcessId::ALL.iter().copied().filter(|process| *process != ProcessId::T3i) {
         let Some(commander) = process.commander() else { continue };

@@ -3,8 +3,8 @@
 //! Task data and inputs are those of the log. Every output buffer of every tick is compared bit for bit, like the
 //! states where the log has them, up to the first difference.
 //!
-//! After a gap, or from the middle, the replay continues with recorded states. All processors therefore replay, each
-//! another stretch, which begins and ends with recorded states. A replay with other task data does not compare record
+//! After a gap, or from the middle, the replay continues with recorded states. All processors therefore replay
+//! different stretches, which begin and end with recorded states. A replay with other task data does not compare record
 //! numbers.
 
 use std::{
@@ -36,7 +36,7 @@ use crate::{
 
 pub use crate::comparison::Difference;
 
-/// Parts of a log that a processor replays at once: eight seconds, of two parts each.
+/// Number of parts that a processor replays at once: eight seconds with two parts each.
 const STRETCH: usize = 16;
 
 #[derive(Clone, Debug, Default)]
@@ -50,7 +50,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// True if the digest of the run can be compared: the replay has all ticks and the same record numbers.
+    /// True if the digest of the run can be compared, because the replay has all ticks and the same record numbers.
     const fn has_digest(&self) -> bool {
         self.from.is_none() && self.until.is_none() && self.data.is_none()
     }
@@ -94,7 +94,7 @@ pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
 /// Replay a log, or a part of it. [`ReplayError::Empty`] if the part contains no tick.
 pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, ReplayError> {
     let started = Instant::now();
-    // It takes half as long as reading a log, and is made in parallel; without a thread it is made later.
+    // The layout takes half as long as reading a log, so a thread makes it in parallel. Otherwise it is made later.
     let _ = thread::Builder::new().spawn(layout::description);
     let log = Log::open(path)?;
     log.check_layout()?;
@@ -102,7 +102,7 @@ pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, Repla
         Some(data) => grown(data.clone(), &log.attachments)?,
         None => generations(&log)?,
     };
-    // Recorded states have the record numbers of the log's own task data.
+    // Recorded states contain record numbers, which are valid only for the log's own task data.
     let length = if options.data.is_some() { usize::MAX } else { STRETCH };
     let stretches = Stretches::new(&log, options, &generations, length);
     let Replayed { ticks, skipped, digest: computed, first_difference } = stretches.replay()?;
@@ -234,7 +234,7 @@ impl<'a> Stretches<'a> {
         let end = first.saturating_add(self.length);
         let mut ticks = self.log.ticks_from(first, &self.codecs);
         let (mut replayer, mut has_begun) = (Replayer::new(), number == 0);
-        // Ticks from the last recorded states to the beginning of the replay.
+        // Ticks from the last recorded states to the start of the replay.
         let mut run_up: Vec<LoggedTick> = Vec::new();
         while let Some(read) = ticks.advance() {
             let (part, logged) = read?;

@@ -12,14 +12,14 @@ use crate::file::is_earlier;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LogLimit {
-    /// Size, bytes, after which the run begins a new log. A log exceeds it by its end and by one second.
+    /// Size, bytes, after which the run begins a new log. A log exceeds this size by its end and by one second.
     pub bytes: u64,
     /// Greatest number of kept earlier logs with the name of this one; the oldest are removed. `None` keeps all.
     pub kept: Option<usize>,
 }
 
 impl LogLimit {
-    /// True if `path` is an earlier log of `log`, which may be removed as one of the oldest.
+    /// True if `path` is an earlier log of `log`. The oldest of them may be removed.
     #[must_use]
     pub fn may_remove(&self, log: &Path, path: &Path) -> bool {
         let directory = |path: &Path| {

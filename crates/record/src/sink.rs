@@ -15,7 +15,7 @@ pub struct Sink {
     durable: bool,
 }
 
-/// A file that must not become shorter than the data written to it: after truncation it would contain zeros.
+/// A file that must not become shorter than the data written to it. After a truncation it would contain zeros.
 struct Whole {
     file: File,
     length: u64, // bytes
@@ -47,7 +47,7 @@ impl Seek for Whole {
 }
 
 impl Sink {
-    /// A sink into `file`. If it is durable, flushed data are on the disk.
+    /// A sink into `file`. In a durable sink, flushed data are on the disk.
     #[must_use]
     pub fn new(file: File, durable: bool) -> Self {
         Self { file: BufWriter::with_capacity(BUFFER, Whole { file, length: 0 }), durable }
@@ -70,7 +70,7 @@ impl Seek for Sink {
         self.file.seek(to)
     }
 
-    /// The default would flush: `BufWriter` knows the position without it.
+    /// The default implementation would flush, which is not necessary for the position.
     fn stream_position(&mut self) -> io::Result<u64> {
         self.file.stream_position()
     }

@@ -1,7 +1,7 @@
 //! The decision tables by which a log is explained: its own ones, or those of this program.
 //!
-//! A log names rows by numbers, which mean other rows once a row was added. So the tables attached to the log
-//! ([`crate::explanation`]) are read back. A program that reads a log ends soon, so they are kept to its end.
+//! A log names rows by numbers, which change when a row is added. So the tables attached to the log
+//! ([`crate::explanation`]) are used. A program that reads a log ends soon, so they are never freed.
 
 use levels::ladder::{Ladder, PROCESS_COUNT, ProcessInfo};
 use rcs_core::{
@@ -19,7 +19,7 @@ use crate::{
 pub enum Origin {
     Same, // the log has the tables of this program
     Log,  // the log has other tables, which are used
-    /// The log is older than the attachment, or the attachment is damaged: the tables of this program are used.
+    /// The attachment is missing or damaged, so the tables of this program are used.
     Program,
 }
 
@@ -49,7 +49,7 @@ pub fn of_log(log: &Log) -> (&'static [ProcessInfo; PROCESS_COUNT], Origin) {
     read(&attached).map_or(own, |processes| (processes, Origin::Log))
 }
 
-/// Tables without what does not decide: comments, and lines of the source.
+/// Tables without comments and source lines, which do not affect decisions.
 fn rules(tables: &Value) -> Value {
     match tables {
         Value::Array(list) => list.iter().map(rules).collect(),
@@ -96,8 +96,8 @@ fn table(shown: &Value) -> Option<&'static Table> {
     })))
 }
 
-/// All variables of a table, in the order of their digits. Those that no row tests have no named values. Without their
-/// list, the values of a decision are unknown.
+/// All variables of a table, in the order of their digits. Variables that no row tests have no named values. Without
+/// the list, the values of a decision are unknown.
 fn variables(shown: &Value) -> Vec<Variable> {
     let asked = list(shown, "variables");
     let variable = |digit: &Value| {
@@ -166,7 +166,7 @@ mod tests {
     use super::*;
     use rcs_core::table::Values;
 
-    /// Every row and every value of the attachment is that of the table from which it was made.
+    /// Every row and every value of the attachment equals that of its source table.
     #[test]
     fn attached_tables_decide_and_name_their_values_as_the_program_does() {
         let attached = explanation::tables();

@@ -109,9 +109,9 @@ impl<W: Write + Seek> LogWriter<W> {
         Self::create_with(sink, setup, None)
     }
 
-    /// Like [`LogWriter::create`], with a tap for all channels and messages. Errors are those of `sink`.
+    /// Like [`LogWriter::create`], with a tap for all channels and messages. Fails like `sink`.
     pub fn create_with(sink: W, setup: Setup, tap: Option<Box<dyn Tap>>) -> McapResult<Self> {
-        // A profile would promise viewers that all channels follow its rules.
+        // The log has no profile, because a profile sets rules for all channels.
         let options = WriteOptions::new()
             .profile("")
             .library(concat!("rcs-record ", env!("CARGO_PKG_VERSION")))
@@ -170,7 +170,7 @@ impl<W: Write + Seek> LogWriter<W> {
         self.earlier = Some(name);
     }
 
-    /// `state` has the states after it; give it with the first tick, once per second, and after a gap.
+    /// `state` has the states after the tick. Pass it with the first tick, once per second, and after a gap.
     pub fn tick(
         &mut self,
         record: &TickRecord,
@@ -183,7 +183,7 @@ impl<W: Write + Seek> LogWriter<W> {
         let all = full && (record.gap > 0 || self.full_sets.is_multiple_of(REPETITION));
         self.full_sets += u64::from(full);
         if full {
-            // The second that ends here is safe before the next one begins.
+            // The second that ends here is written before the next one begins.
             if self.last_full.is_some() {
                 self.lossless.end_second(&mut self.output)?;
             }
@@ -288,7 +288,7 @@ impl<W: Write + Seek> LogWriter<W> {
         attach(&mut self.output, time, attachment)
     }
 
-    /// End the log: metadata and summary. Errors are those of the sink.
+    /// End the log: metadata and summary. Fails like the sink.
     pub fn finish(mut self, end: &End, lost: Lost) -> McapResult<Written> {
         let digest = end.digest.map_or_else(String::new, |digest| format!("{digest:016x}"));
         let entries = [
@@ -321,7 +321,7 @@ pub struct Written {
     pub bytes: u64,
 }
 
-/// Metadata and attachments: written first, so that a failure of the run cannot lose them.
+/// Writes metadata and attachments first, so that a failure of the run cannot lose them.
 fn write_head<W: Write + Seek>(output: &mut Output<W>, setup: &Setup) -> McapResult<()> {
     let mut run: BTreeMap<String, String> = setup.run.clone();
     run.insert(LAYOUT.into(), layout::version());

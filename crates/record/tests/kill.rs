@@ -29,7 +29,7 @@ fn main() -> ExitCode {
     let mut arguments = env::args().skip(1);
     match arguments.next().as_deref() {
         Some(VICTIM) => record_until_killed(Path::new(&arguments.next().expect("a victim has a file"))),
-        // Answer to `cargo test -- --list`, so that tools that list tests find none here.
+        // The answer to `cargo test -- --list` is empty, so that tools find no tests here.
         Some("--list") => ExitCode::SUCCESS,
         _ => kill_ten(),
     }
@@ -45,7 +45,7 @@ fn record_until_killed(path: &Path) -> ExitCode {
         external.devices.resolvers.counts = [u32::try_from(tick.0 * 37 % 131_072).unwrap_or_default(); 6];
         ladder.step(tick, &before, &external, &TaskData::default(), &mut memory);
         recorder.tick(tick, &external, &memory, || ladder.state());
-        // Without its parent process, the program is not killed either.
+        // The program ends by itself if its parent process has ended.
         if writeln!(out, "{tick} {}", recorder.pending()).and_then(|()| out.flush()).is_err() {
             break;
         }

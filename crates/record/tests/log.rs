@@ -260,7 +260,7 @@ fn with_lz4(bytes: &[u8]) -> Vec<u8> {
         let length = usize::try_from(u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap())).unwrap();
         let (opcode, body) = (bytes[at], &bytes[at + 9..at + 9 + length]);
         at += 9 + length;
-        // Only chunks, and data that do not depend on their size: neither indexes nor summary.
+        // Indexes and summary are omitted, because they depend on the size of the chunks.
         let body = match opcode {
             mcap::records::op::CHUNK => {
                 let name = usize::try_from(u32::from_le_bytes(body[28..32].try_into().unwrap())).unwrap();
@@ -294,7 +294,7 @@ fn chunks_in_lz4_are_read_and_other_compressions_are_named() {
     let report = replay(&path).unwrap();
     assert!(report.is_same() && report.damage.is_none(), "{:?}", report.damage);
     assert_eq!((report.ticks, report.skipped), (300, 0));
-    // A name of the same length that no program knows.
+    // An unknown compression name of the same length.
     let place = packed.windows(3).position(|window| window == b"lz4").unwrap();
     let mut other = packed;
     other[place..place + 3].copy_from_slice(b"xyz");
@@ -562,7 +562,7 @@ fn removed_directory_does_not_end_the_run() {
     assert!(error.to_string().contains("run.mcap was removed during the run"), "{error}");
 }
 
-/// `/dev/full` is always full: even the head of the log has no room.
+/// `/dev/full` is always full, so not even the head of the log has room.
 #[cfg(target_os = "linux")]
 #[test]
 fn full_disk_is_reported_before_the_run() {
@@ -708,7 +708,7 @@ fn real_time_run_never_waits_and_counts_lost_ticks() {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     let mut recorder = Recorder::start(&path, Pace::Drop, setup()).unwrap();
-    // Far faster than any writer: most ticks find the ring full.
+    // The run is far faster than any writer, so most ticks find the ring full.
     let digest = run(20_000, |tick, external, memory, state| recorder.tick(tick, external, memory, || state));
     let lost = recorder.lost().ticks;
     let summary =

@@ -1,4 +1,4 @@
-//! A run into which task data were loaded while it was running: its log replays across the reload.
+//! The log of a run in which task data were loaded replays across the reload.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ fn home() -> Vec<Source> {
     )
 }
 
-/// MOVE to HOME, which is not in the data before the reload: once before it and once after.
+/// MOVE to HOME once before and once after the reload. Before it, HOME is not in the data.
 fn inputs(tick: u64) -> ExternalInputs {
     let mut external = ExternalInputs::default();
     external.hws.number = if tick < 10 { 0 } else { 1 + u32::from(tick > RELOADED + 10) };

@@ -1,4 +1,4 @@
-//! A run that writes several logs, one after the other: each is read and replayed without the others.
+//! A run writes several logs, one after the other. Each is read and replayed without the others.
 
 use std::{fs, path::PathBuf};
 
@@ -39,7 +39,7 @@ impl Tap for Counts {
     }
 }
 
-/// Record a run with a limit; returns the logs in the order of their ticks, and what its tap got.
+/// Record a run with a limit; returns the logs in the order of their ticks, and the messages of its tap.
 fn recorded(directory: &std::path::Path, kept: Option<usize>) -> (Vec<PathBuf>, (usize, usize), usize) {
     let path = directory.join("run.mcap");
     let attachments = vec![Attachment::text(Attachment::JOB, "TRANSFER")];

@@ -145,8 +145,8 @@ impl Agent {
         }
     }
 
-    /// Reads the pedestal's four mailboxes, all or none. False before its first status. An optional mailbox may have
-    /// its initial value.
+    /// Reads all four mailboxes of the pedestal, or none. Returns false before its first status. An optional mailbox
+    /// may have its initial value.
     fn receive(&mut self) -> Result<bool, (Place, PedestalError)> {
         let endpoint = &self.endpoint;
         let Some(status) = read(endpoint, PEDESTAL_STATUS, Status::decode)? else { return Ok(false) };

@@ -219,7 +219,7 @@ fn gateway_names_the_person_and_the_role() {
     }
     assert_eq!(enter(&socket, &[]).map(drop), Err(400), "a gateway names the person");
     assert_eq!(enter(&socket, &person("owner")).map(drop), Err(400));
-    // A program at the port of this machine needs the token, in spite of its headers.
+    // A program that connects to the local port needs the token, even with the headers of a gateway.
     let claims = "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
                   Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\
                   Sec-WebSocket-Protocol: foxglove.sdk.v1\r\nRcs-Person: anna\r\nRcs-Role: operator\r\n\r\n";

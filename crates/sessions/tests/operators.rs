@@ -168,7 +168,7 @@ fn request_is_late_after_its_sender_stopped_waiting() {
 fn requests_of_an_ended_session_are_late() {
     let bench = Bench::new();
     let mut stream = UnixStream::connect(&bench.path).unwrap();
-    // More lines than fit the queue to the run, so that the session has not read all of them.
+    // The lines do not fit into the queue to the run, so the session cannot read all of them.
     let lines: String = (1..=100).map(|number| format!("{number} @5000 PAUSE\n")).collect();
     stream.write_all(format!("hello killed\n{lines}").as_bytes()).unwrap();
     bench.expect("killed", Event::Connected);

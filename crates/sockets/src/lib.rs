@@ -33,10 +33,10 @@ use rustix::{
 };
 
 const CHUNK: usize = 8192; // read at once
-/// Pause after a failed accept: the system may lack descriptors.
+/// Pause after a failed accept, because the system may lack descriptors.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Refuses another user at the other end: [`io::ErrorKind::PermissionDenied`].
+/// Fails with [`io::ErrorKind::PermissionDenied`] if another user is at the other end.
 pub fn check_user(stream: &UnixStream) -> io::Result<()> {
     let (expected, found) = (geteuid(), sockopt::socket_peercred(stream)?.uid);
     if expected == found {
@@ -101,7 +101,7 @@ impl Line {
                 Ok(count > 0)
             }
             Err(error) if matches!(error.kind(), WouldBlock | Interrupted) => Ok(true),
-            // The other side closed it before it had read everything.
+            // The other side has closed the connection before reading everything.
             Err(error) if error.kind() == ConnectionReset => Ok(false),
             Err(error) => Err(error),
         }
@@ -116,7 +116,7 @@ impl Line {
             PollFd::from_borrowed_fd(wake.unwrap_or(socket), PollFlags::IN),
         ];
         let count = if wake.is_some() { 2 } else { 1 };
-        // Rounded up: an early end would cause many short waits.
+        // The time is rounded up, because an early end would cause many short waits.
         let left =
             until.map(|until| until.saturating_duration_since(Instant::now()) + Duration::from_millis(1));
         let left = left.and_then(|left| Timespec::try_from(left).ok());
@@ -137,7 +137,7 @@ impl Line {
         let _ = self.stream.shutdown(Shutdown::Write);
     }
 
-    /// Reads until the other side closes or `until`: a socket closed with unread bytes may lose sent bytes.
+    /// Reads until the other side closes, or until `until`. Closing a socket with unread bytes can lose sent bytes.
     pub fn drain(&mut self, until: Instant) {
         let mut is_open = true;
         while is_open && Instant::now() < until {
@@ -148,7 +148,7 @@ impl Line {
     }
 }
 
-/// The file with its identity: another program may replace it.
+/// The socket's file with its identity, because another program may replace it.
 #[derive(Debug)]
 struct SocketFile {
     path: PathBuf,
@@ -213,10 +213,10 @@ impl Acceptor {
 impl Drop for Acceptor {
     fn drop(&mut self) {
         self.over.store(true, Ordering::Release);
-        // Wakes the thread, even if another program uses the path now.
+        // The shutdown wakes the thread, even if another program now uses the path.
         let woken = rustix::net::shutdown(&*self.socket, rustix::net::Shutdown::Both);
         if let Some(thread) = self.thread.take().filter(|_| woken.is_ok()) {
-            // A panic in it was reported.
+            // A panic in the thread was already reported.
             let _ = thread.join();
         }
         self.file.remove();

@@ -31,7 +31,7 @@ pub struct Request {
     pub rest: Vec<u8>,           // bytes after the request
 }
 
-/// Reads a request, at most until a time. Errors: a refusal; or the error of the connection.
+/// Reads a request, at most until a time. The error is a refusal, or that of the connection.
 pub fn read(tls: &mut Tls, until: Instant) -> io::Result<Result<Request, Refusal>> {
     let (mut bytes, mut part) = (Vec::new(), [0; 4096]);
     loop {
@@ -54,7 +54,7 @@ fn too_large() -> Refusal {
     ("431 Request Header Fields Too Large", why)
 }
 
-/// The request at the start of some bytes; `None` if it is not complete.
+/// The request at the start of the bytes; `None` if it is incomplete.
 fn parse(bytes: &[u8]) -> Result<Option<Request>, Refusal> {
     let mut headers = [httparse::EMPTY_HEADER; HEADERS];
     let mut head = httparse::Request::new(&mut headers);
@@ -130,7 +130,7 @@ pub fn answer(status: &str, extra: &str, body: &str) -> Vec<u8> {
     .into_bytes()
 }
 
-/// An answer that leads to another address, with a new cookie.
+/// A redirection to another address, with a new cookie.
 #[must_use]
 pub fn see(address: &str, login: Option<(&str, u64)>) -> Vec<u8> {
     let cookie = login.map_or_else(String::new, |(id, seconds)| {

@@ -17,7 +17,7 @@ const ALL_TRIES: u32 = 30;
 const ALL_AGAIN: Duration = Duration::from_secs(2);
 const ADDRESSES: usize = 1024; // greatest number of addresses whose failed tries are remembered
 
-/// The address of a client. A client with IPv6 has many addresses with the same first half.
+/// The address of a client. An IPv6 client has many addresses with the same first half, so only this half is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Source(IpAddr);
 
@@ -33,7 +33,7 @@ impl From<IpAddr> for Source {
 #[derive(Clone, Default)]
 pub struct Strangers(Arc<Mutex<BTreeMap<Source, usize>>>);
 
-/// A connection without a login. It counts until it is dropped.
+/// A connection without a login. It is counted until it is dropped.
 pub struct Stranger {
     all: Strangers,
     source: Source,
@@ -156,7 +156,7 @@ mod tests {
         let total: usize = (0..100).map(|number| try_all(numbered(number), later)).sum();
         assert_eq!(total, ALL_TRIES as usize);
         assert_eq!(try_all(numbered(99), later + ALL_AGAIN), 1);
-        // Addresses that no longer count are forgotten; the list is bounded.
+        // Expired addresses are removed, so that the list is bounded.
         for number in 0..5000 {
             let _ = tries.may_try(numbered(number), later + ALL_AGAIN);
         }

@@ -1,4 +1,4 @@
-//! Logins: who has shown a secret, and until when. They are kept in memory, so a restart ends them.
+//! Logins: persons who have shown a secret, with the time of expiry. They are in memory, so a restart ends them.
 
 use std::{
     sync::{
@@ -59,7 +59,7 @@ impl Logins {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The oldest login of a person with too many ends, or the oldest of all. Fails without random bytes.
+    /// Begins a login. Above a limit, it ends the oldest login of the person, or of all. Fails without random bytes.
     pub fn open(&self, person: Person, now: Instant) -> Result<Arc<Login>, getrandom::Error> {
         let (is_over, open) = (AtomicBool::new(false), AtomicUsize::new(0));
         let login = Arc::new(Login { id: random_digits()?, person, until: now + VALIDITY, is_over, open });
@@ -78,7 +78,7 @@ impl Logins {
         Ok(login)
     }
 
-    /// The login with a cookie. All are compared, each in constant time.
+    /// The login with a cookie. The cookie is compared with all logins, each in constant time.
     #[must_use]
     pub fn find(&self, id: &str, now: Instant) -> Option<Arc<Login>> {
         let all = self.lock();

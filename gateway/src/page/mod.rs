@@ -4,8 +4,8 @@
 //!   browser == TLS 1.3, cookie of a login == rcs-gateway page -- Unix, person and role -- rcs-run
 //! ```
 //!
-//! The gateway checks who connects, tells the run name and role, and passes bytes on as they are. The run gives no
-//! right to a viewer, and treats an operator like any other.
+//! The gateway authenticates the person, sends name and role to the run, and passes bytes on unchanged. The run gives a
+//! viewer no rights, and treats an operator like any other operator.
 
 pub mod forms;
 pub mod http;
@@ -115,7 +115,7 @@ impl Gateway {
             // If the thread cannot start, the connection is closed.
             let _ = thread::Builder::new().spawn(move || {
                 let served = gateway.serve(socket, peer, stranger);
-                // Browsers open connections that they do not use; an alert says why they refuse the certificate.
+                // Browsers open unused connections. A TLS alert has the reason why a browser refuses the certificate.
                 if let Err(error) = served
                     && error.kind() == io::ErrorKind::InvalidData
                 {
@@ -265,7 +265,7 @@ impl Gateway {
         }
     }
 
-    /// Connects to the run, and asks for its page, or with the headers of a WebSocket for that.
+    /// Connects to the run, and asks for its page or, with the headers of a WebSocket, for the WebSocket.
     fn enter(&self, more: &str) -> Result<UnixStream, String> {
         let path = self.run.display();
         let absent = |error: io::Error| {
@@ -285,14 +285,14 @@ fn too_many() -> Refusal {
     ("429 Too Many Requests", "this login has too many connections: close another tab".to_owned())
 }
 
-/// The header `Host` of a browser that has connected to an address: its port is left out if it is that of HTTPS.
+/// The header `Host` of a browser that has connected to an address: the port is omitted if it is that of HTTPS.
 fn host(own: SocketAddr) -> String {
     let own = SocketAddr::new(own.ip().to_canonical(), own.port());
     let text = own.to_string();
     text.strip_suffix(":443").map_or(text.clone(), str::to_owned)
 }
 
-/// What changes when a file is replaced or written; `None` without a file.
+/// Values that change when a file is replaced or written; `None` without a file.
 fn state(path: &Path) -> Option<(u64, u64, Option<SystemTime>, u32)> {
     let found = fs::metadata(path).ok()?;
     Some((found.ino(), found.len(), found.modified().ok(), found.mode()))

@@ -91,7 +91,7 @@ impl FromStr for Role {
     }
 }
 
-/// A person who may open the page. A new secret makes another person.
+/// A person who may open the page. With a new secret it is another person.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Person {
     pub name: PersonName,
@@ -142,7 +142,7 @@ impl People {
         self.0.iter().find(|person| person.name == *name)
     }
 
-    /// True if a person is there with the same role and secret.
+    /// True if the file has the person with the same role and secret.
     #[must_use]
     pub fn has(&self, person: &Person) -> bool {
         self.0.contains(person)
@@ -170,7 +170,7 @@ impl fmt::Display for People {
     }
 }
 
-/// The hash of a secret that nobody has.
+/// The hash of a secret that no person has.
 fn decoy() -> &'static str {
     static DECOY: OnceLock<String> = OnceLock::new();
     DECOY.get_or_init(|| {

@@ -1,5 +1,5 @@
-//! Passes bytes between a browser and the run, as they are. The run pings the browser through it, so a browser that is
-//! cut off misses the time limits of the run, as at the port of the run's own machine.
+//! Passes bytes between a browser and the run unchanged. The run's pings pass, too, so the run detects a lost browser
+//! as it does at its own port.
 
 use std::{
     fmt,
@@ -62,7 +62,7 @@ pub fn pump(mut tls: Tls, run: &UnixStream, upward: Upward, login: &Login) -> En
     };
     let Err(ended) = ended;
     if matches!(ended, Ended::ByRun | Ended::ByLogin) {
-        // A browser that has gone does not read the end.
+        // A disconnected browser does not read the end.
         let _ = tls.finish(&[], Instant::now() + CLOSING);
     }
     ended
@@ -101,7 +101,7 @@ fn pass(
             match run.write(&up) {
                 Ok(count) => drop(up.drain(..count)),
                 Err(error) if is_later(&error) => {}
-                // What the run has sent before its end can still be read.
+                // The data that the run has sent before its end can still be read.
                 Err(_) => up.clear(),
             }
         }
@@ -130,7 +130,7 @@ fn pass(
         let write = if writes { PollFlags::OUT } else { PollFlags::empty() };
         let mut sockets =
             [tls.interest(up.len() < CHUNK), PollFd::from_borrowed_fd(run.as_fd(), read | write)];
-        // A run that has closed its end is always ready: it is looked at when the browser has read all.
+        // A socket that the run has closed is always ready, so it is polled only when the browser has read everything.
         let count = if reads || writes { 2 } else { 1 };
         wait(sockets.get_mut(..count).unwrap_or_default(), now + LOOK)?;
     }

@@ -22,10 +22,10 @@ use rustls::{
 
 use crate::{error::Error, keys::Keys};
 
-/// Bytes that the system may keep for a client that reads slowly. More would only make the page late.
+/// Bytes that the system may keep for a client that reads slowly. More would only delay the page.
 const KEPT: usize = 128 * 1024;
 
-/// With the certificate of a cell. Fails if the certificate or the key cannot be used.
+/// A configuration with a cell's certificate. Fails if the certificate or the key cannot be used.
 pub fn config(keys: &Keys) -> Result<Arc<ServerConfig>, Error> {
     let failed = |reason: String| Error::Tls { certificate: keys.certificate.clone(), reason };
     let chain = CertificateDer::pem_file_iter(&keys.certificate).and_then(Iterator::collect);
@@ -55,7 +55,7 @@ impl Tls {
         Ok(Self { socket, session, is_ended: false, sent: 0 })
     }
 
-    /// Sends what waits and receives what has arrived, without waiting. Fails after a violation of TLS.
+    /// Sends pending bytes and receives arrived ones, without waiting. Fails after a violation of TLS.
     pub fn turn(&mut self) -> io::Result<()> {
         self.flush()?;
         while !self.is_ended && self.session.wants_read() {
@@ -72,7 +72,7 @@ impl Tls {
 
     fn process(&mut self) -> io::Result<()> {
         let Err(error) = self.session.process_new_packets() else { return Ok(()) };
-        // The alert; a client that has gone does not read it.
+        // This sends the alert, which a disconnected client does not read.
         let _ = self.flush();
         Err(io::Error::new(ErrorKind::InvalidData, error))
     }
@@ -118,7 +118,7 @@ impl Tls {
         self.sent
     }
 
-    /// The socket, and what [`Tls::turn`] waits for; more bytes are read if `reads`.
+    /// The socket, and the events for which [`Tls::turn`] waits. With `reads` it waits for bytes, too.
     #[must_use]
     pub fn interest(&self, reads: bool) -> PollFd<'_> {
         let read = if reads && !self.is_ended { PollFlags::IN } else { PollFlags::empty() };
@@ -130,7 +130,7 @@ impl Tls {
         self.socket.as_fd()
     }
 
-    /// Waits for received bytes, at most until a time. Errors: [`ErrorKind::TimedOut`], and as [`Tls::turn`].
+    /// Waits for received bytes, at most until a time. Fails with [`ErrorKind::TimedOut`], or like [`Tls::turn`].
     pub fn receive_until(&mut self, bytes: &mut [u8], until: Instant) -> io::Result<usize> {
         loop {
             self.turn()?;

@@ -1,4 +1,4 @@
-//! What certificates of the cell try beyond their role, and a certificate without any permission.
+//! Attacks with certificates of the cell beyond their roles, and with a certificate without any permission.
 
 use std::{
     sync::{Arc, Mutex},
@@ -47,7 +47,7 @@ fn listen(listener: &Session, id: &str) -> (Heard, u32) {
         let heard = Arc::clone(&heard);
         let take =
             move |sample: zenoh::sample::Sample| heard.lock().unwrap().push(sample.key_expr().to_string());
-        // A denied subscriber is declared, and hears nothing.
+        // A denied subscriber can be declared, but receives nothing.
         listener.declare_subscriber(key.to_owned()).callback(take).background().wait().unwrap();
     };
     let mut attacks = 0;
@@ -103,7 +103,7 @@ fn speak(session: &Session, id: &str) -> (Vec<String>, u32) {
         session.delete(&key).wait().unwrap();
         attacks += 1;
     }
-    // The tokens of the victim and of a gateway, which vanish at once.
+    // The tokens of the victim and of a gateway, which disappear at once.
     for key in [format!("{front}/alive"), format!("rcs/{CELL}/alive/0123")] {
         drop(session.liveliness().declare_token(key).wait().unwrap());
         attacks += 1;
@@ -161,7 +161,7 @@ fn no_certificate_gets_beyond_its_role() {
     assert!(claim.is_alive(), "{}", run.errors());
     let before = echo(&claim);
     for name in attackers {
-        // Two sessions, because a session hears itself.
+        // Two sessions are needed, because a session receives its own samples.
         let attacker = || connect(&keys, name, &shop.endpoint()).unwrap();
         let (listener, speaker) = (attacker(), attacker());
         let (heard, listening) = listen(&listener, &claim.id);
@@ -185,7 +185,7 @@ fn no_certificate_gets_beyond_its_role() {
 fn a_neighbour_refuses_a_gateway_with_another_name() {
     let shop = Shop::new(&["hwsc-1", "other@127.0.0.1"]);
     let _run = shop.real_run();
-    // A gateway that serves the cell's keys with the certificate of another server.
+    // This gateway serves the cell's keys with the certificate of another server.
     let keys = shop.path("keys");
     std::fs::rename(keys.join("t3.pem"), keys.join("kept.pem")).unwrap();
     std::fs::copy(keys.join("other.pem"), keys.join("t3.pem")).unwrap();
@@ -193,7 +193,7 @@ fn a_neighbour_refuses_a_gateway_with_another_name() {
     let mut gateway = shop.start_serve(&["workstation=hwsc-1"]);
     assert_eq!(gateway.finish(10.0).code(), Some(2));
     assert!(gateway.errors().contains("common name t3, found \"other\""), "{}", gateway.errors());
-    // The same by a program that does not check itself.
+    // The same with a program that does not check its own certificate.
     let rogue = crate::native::rogue_gateway(&keys, "other", &shop.endpoint()).unwrap();
     let asked = Arc::new(Mutex::new(0));
     let count = Arc::clone(&asked);
@@ -208,7 +208,7 @@ fn a_neighbour_refuses_a_gateway_with_another_name() {
     assert_eq!(*asked.lock().unwrap(), 0, "{}", connect.errors());
 }
 
-/// The gateway connects to a router, for monitors. One that was taken over hears the status, and commands nothing.
+/// The gateway connects to a router for monitors. A compromised router receives the status, but commands nothing.
 #[test]
 fn a_compromised_router_can_neither_command_nor_read_claims() {
     let shop = Shop::new(&[VICTIM, "router@127.0.0.1"]);

@@ -200,7 +200,7 @@ impl Live {
         answer.unwrap()
     }
 
-    /// Reads for a time, and so answers pings. True if the run has sent its time.
+    /// Reads for a time, which also answers pings. Returns true if the run has sent its time.
     pub fn watch(&mut self, time: Duration) -> bool {
         let until = Instant::now() + time;
         let mut has_time = false;

@@ -15,7 +15,7 @@ pub fn openssl(shop: &Shop, arguments: &[&str]) -> String {
     command.arg("-CAfile").arg(shop.path("keys/ca.pem")).args(arguments);
     let mut child =
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    // While its input is open, openssl reads until the gateway closes the connection.
+    // As long as its input is open, openssl reads until the gateway closes the connection.
     let input = child.stdin.take();
     let output = child.wait_with_output().unwrap();
     drop(input);

@@ -16,7 +16,7 @@ fn workstation_through_a_gateway_commands_the_run() {
     let gateway = shop.serve(&["workstation=hwsc-1"]);
     let _connect = shop.connect("workstation", "hwsc-1");
     let mut hwsc = shop.hwsc("hwsc-1").unwrap();
-    // The first one of a run takes longer.
+    // The first PAUSE of a run takes longer.
     hwsc.pause().unwrap();
     let slowest = |hwsc: &mut Hwsc| (0..10).map(|_| hwsc.pause().unwrap()).max().unwrap();
     let through = slowest(&mut hwsc);
@@ -27,7 +27,7 @@ fn workstation_through_a_gateway_commands_the_run() {
     assert!(through <= direct + 1, "PAUSE took {through} ticks through the gateway and {direct} without");
 }
 
-/// The refusal is the run's, in its own words; nobody is displaced.
+/// The refusal is the run's own text, and the present holder keeps its claim.
 #[test]
 fn second_claimant_is_refused_in_the_words_of_the_run() {
     let shop = Shop::new(&["hwsc-1", "hwsc-2"]);
@@ -39,7 +39,7 @@ fn second_claimant_is_refused_in_the_words_of_the_run() {
     gateway.wait_for("workstation hwsc-2 was refused: workstation is connected already");
     hwsc.tick().unwrap();
     drop(hwsc);
-    // The next claimant is admitted as soon as the first has gone.
+    // The next claimant is admitted as soon as the first has disconnected.
     assert!(within(1.0, || shop.hwsc("hwsc-2").is_ok()));
 }
 
@@ -62,7 +62,7 @@ fn gateway_without_a_run_warns_and_serves_the_run_that_starts_later() {
     let gateway = shop.serve(&["workstation=hwsc-1"]);
     gateway.wait_for("no run listens at");
     let connect = shop.connect("workstation", "hwsc-1");
-    // Closed without a reason, so that a neighbour tries again.
+    // The connection is closed without a reason, so that a neighbour tries again.
     assert_eq!(shop.hwsc("hwsc-1").err().unwrap(), "closed");
     connect.wait_for("no run listens at");
     let _run = shop.real_run();
@@ -83,7 +83,7 @@ fn killed_client_is_noticed_within_a_second() {
     println!("killed client: the next one is admitted after {:?}", start.elapsed());
 }
 
-/// The robot finishes the motion that it was commanded.
+/// The robot finishes the commanded motion.
 #[test]
 fn gateway_killed_in_a_motion_does_not_stop_it_and_the_next_one_admits_the_neighbour() {
     let shop = Shop::new(&["hwsc-1"]);
@@ -114,7 +114,7 @@ fn gateway_killed_in_a_motion_does_not_stop_it_and_the_next_one_admits_the_neigh
     assert!(run.child.try_wait().unwrap().is_none(), "the run has ended: {}", run.errors());
 }
 
-/// Commands do not pass the router, so its end is seen by monitors only.
+/// Commands do not pass through the router, so only monitors detect its end.
 #[test]
 fn router_killed_in_a_motion_disturbs_no_claim_and_the_next_one_has_the_status() {
     let shop = Shop::new(&["hwsc-1", "router@127.0.0.1", "mes"]);
@@ -151,7 +151,7 @@ fn router_killed_in_a_motion_disturbs_no_claim_and_the_next_one_has_the_status()
     assert!(!gateway.errors().contains("has disconnected"), "{}", gateway.errors());
 }
 
-/// The manual's shift, with all four neighbours behind gateways: the same bits.
+/// The manual's shift, with all four neighbours behind gateways, has the same digest.
 #[test]
 fn shift_through_gateways_has_the_same_digest() {
     let roles = ["workstation", "data-system", "pedestal", "vision"];

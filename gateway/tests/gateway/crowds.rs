@@ -19,7 +19,7 @@ use crate::shop::{Hwsc, Shop};
 const CROWD: usize = 300; // number of bad clients; as many of them as this connect again in a second
 const THREADS: usize = 4;
 
-/// How long an honest client needs while a crowd is there.
+/// The time until an honest client is admitted during an attack by many clients.
 fn admitted_beside(shop: &Shop, crowd: impl FnOnce(&Arc<AtomicBool>)) -> Duration {
     let _run = shop.real_run();
     let gateway = shop.serve(&["workstation=hwsc-1"]);
@@ -78,7 +78,7 @@ fn clients_that_send_garbage_do_not_delay_an_honest_one() {
 #[test]
 fn refused_client_that_hammers_keeps_no_other_client_out() {
     let shop = Shop::new(&["eye"]);
-    // The run has a vision system of its own, and refuses another one.
+    // The run has its own vision system, and refuses another one.
     let run = shop.real_run();
     let gateway = shop.serve(&["vision=eye"]);
     let is_over = AtomicBool::new(false);
@@ -94,7 +94,7 @@ fn refused_client_that_hammers_keeps_no_other_client_out() {
                 }
             });
         }
-        // In the first second the places fill.
+        // The places fill within the first second.
         thread::sleep(Duration::from_secs(1));
         let admitted: Result<Vec<_>, _> = (0..20)
             .map(|_| {

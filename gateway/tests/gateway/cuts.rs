@@ -1,4 +1,4 @@
-//! A line that is cut for a while.
+//! A line that is interrupted for some time.
 
 use std::{
     thread,

@@ -1,4 +1,4 @@
-//! A TCP line that can be cut: nothing passes while it is, and nothing is lost.
+//! A TCP line that can be interrupted. Meanwhile nothing passes, but nothing is lost.
 
 use std::{
     io::{Read as _, Write as _},

@@ -1,5 +1,5 @@
-//! A client of Zenoh without the gateway's program: an honest one that holds a claim, and one without any rules of its
-//! own, which tries everything.
+//! A client of Zenoh without the gateway's program: an honest one that holds a claim, and an attacker without access
+//! control.
 
 use std::{
     path::Path,

@@ -79,7 +79,7 @@ const HELD: [&str; 3] = ["joystick velocity 0", "joystick frame WORLD", "joystic
 const RELEASED: &str = "stick and buttons are released"; // the answer to `leave` if something was held
 
 impl Operator {
-    /// Hold the stick for a while, with or without keep-alives; true if it was still held then.
+    /// Hold the stick for some time, with or without keep-alives. Returns true if it was still held at the end.
     fn holds(&mut self, has_keep_alives: bool) -> bool {
         for request in HELD {
             let answer = self.request(request);
@@ -139,12 +139,12 @@ fn rcs_run_send_operates_a_run_through_a_gateway() {
     let answered = within(20.0, || {
         let (is_taken, said) = send(&shop, "op-1", &["status"]);
         last = said;
-        // A joystick box that is on would end the PAUSE of the start.
+        // A joystick box that is on would end the PAUSE at the start of the job.
         is_taken && last.contains("the job waits; nobody commands")
     });
     assert!(answered, "{last}");
     gateway.wait_for("operator op-1 has connected");
-    // A motion by hand is held while `send` stays, and released when its end of the gateway is killed.
+    // A motion by hand is held while `send` stays connected, and released when its gateway is killed.
     let held = Command::new(program("rcs-run"))
         .args(["send", "--connect", &shop.socket_address("op-1"), "--name", "anna", "--stay", "60"])
         .args(HELD)

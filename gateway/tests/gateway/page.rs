@@ -138,7 +138,7 @@ fn operator_operates_under_its_name_and_viewer_does_not() {
     assert_eq!(operator.parameter("/viewer/name"), "page1.anna");
     let answer = operator.ask("PAUSE").unwrap();
     assert!(answer.starts_with("tick "), "{answer}\n{}", run.errors());
-    // The headers by which a gateway names a person are not those of a browser.
+    // The gateway ignores a browser's headers that name a person.
     let claimed = [("origin", vera.origin()), ("rcs-role", "operator".into()), ("rcs-person", "anna".into())];
     let claimed = claimed.each_ref().map(|(name, value)| (*name, value.as_str()));
     for mut viewer in [vera.live().unwrap(), vera.upgrade(&claimed).unwrap()] {
@@ -163,7 +163,7 @@ fn requests_without_login_or_from_other_pages_are_refused() {
     let _run = cell.operated_run();
     let anna = cell.logged_in("anna");
     let own = anna.origin();
-    // Pages of other sites, also under the name of another host for this address.
+    // Pages of other sites are refused, even under the name of another host for this address.
     let plain = own.replace("https", "http");
     for origin in ["https://evil.example", "null", "http://127.0.0.1", "https://127.0.0.1", &plain] {
         assert_eq!(anna.upgrade(&[("origin", origin)]).unwrap_err(), 403, "{origin}");
@@ -236,7 +236,7 @@ fn silent_and_slow_clients_neither_block_nor_disconnect_a_person() {
     println!("with {} silent clients a login and the page take {:?}", silent.len(), began.elapsed());
     assert!(live.watch(Duration::from_millis(300)), "the person no longer sees the run");
     drop(live);
-    // They are disconnected, as is a client that sends a request byte by byte.
+    // These clients are disconnected, like a client that sends a request byte by byte.
     let mut slow = cell.browser().tls().unwrap();
     let began = Instant::now();
     slow.write_all(b"GET / HTTP/1.1\r\n").unwrap();
@@ -264,13 +264,13 @@ fn removed_or_changed_person_is_disconnected() {
     assert!(ended < Duration::from_secs(2), "{ended:?}");
     assert_eq!((anna.get("/").status, anna.live().unwrap_err()), (303, 401));
     assert!(viewer.watch(Duration::from_millis(300)), "another person was disconnected");
-    // A secret is renewed: the old one and its logins end.
+    // A renewed secret ends the old secret and its logins.
     person(&cell.shop, &["remove", "vera"]);
     let secret = add(&cell.shop, "vera", "operator");
     assert!(viewer.end() < Duration::from_secs(2));
     assert!(within(2.0, || vera.log_in("vera", &secret).status == 303));
     assert_eq!(vera.live().unwrap().parameter("/operator/access"), "granted");
-    // A file that cannot be read admits nobody.
+    // With an unreadable file, nobody is admitted.
     let good = fs::read(cell.shop.path("people")).unwrap();
     fs::write(cell.shop.path("people"), "vera admin x\n").unwrap();
     cell.gateway.wait_for("people:1: expected NAME ROLE HASH");

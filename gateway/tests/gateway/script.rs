@@ -7,7 +7,7 @@ use crate::shop::{Process, free_port, program, within};
 #[test]
 fn script_starts_five_cells_that_the_monitor_sees_executing_and_ends_all_of_them() {
     let directory = tempfile::tempdir().unwrap();
-    // The ports of the gateways follow that of the router.
+    // The ports of the gateways follow the port of the router.
     let port = (0..20).map(|_| free_port()).find(|port| (1..=5).all(|more| is_free(port + more))).unwrap();
     let mut command = Command::new(concat!(env!("CARGO_MANIFEST_DIR"), "/shop.sh"));
     command.arg(directory.path()).env("RCS_SHOP_PORT", port.to_string());

@@ -81,8 +81,8 @@ impl Drop for Process {
     }
 }
 
-/// True if a condition holds within a time; false if it becomes true later. It is tried ten times a second: a run keeps
-/// out a client that it has refused eight times in a second (docs/neighbours.md "Security").
+/// Returns true if a condition holds within a time. It is checked at intervals of 0.1 s, because a run blocks a client
+/// that it has refused eight times in a second (docs/neighbours.md "Security").
 pub fn within(seconds: f64, mut condition: impl FnMut() -> bool) -> bool {
     let until = Instant::now() + Duration::from_secs_f64(seconds);
     loop {
@@ -159,7 +159,7 @@ impl Shop {
         start_router(self.directory.path(), endpoint, &[CELL])
     }
 
-    /// The gateway, which may not come up.
+    /// Starts the gateway without waiting for it, because it may fail.
     pub fn start_serve(&self, allow: &[&str]) -> Process {
         let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-gateway"));
         command
@@ -321,7 +321,7 @@ impl Hwsc {
         status.echo == self.number && status.report.to_string() == report
     }
 
-    /// Take the command that the run executes, of an earlier connection, for the last one.
+    /// Treat the command in progress, from an earlier connection, as the last one of this connection.
     pub fn follow_last(&mut self) -> Result<(), String> {
         while self.status.data().is_empty() {
             self.tick()?;

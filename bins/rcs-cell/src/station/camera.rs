@@ -19,7 +19,7 @@ use sessions::network::{Address, Peer, PeerError, Received, Role};
 
 const PAUSE: Duration = Duration::from_millis(500); // wait for a run, and pause after a failed connection
 
-/// Requests between the thread and the cell. Their numbers are the station's, because each run begins its own again.
+/// Requests between the thread and the cell, with the station's own numbers, because each run restarts its numbers.
 #[derive(Debug, Default)]
 struct Desk {
     request: Option<VisionRequest>,
@@ -66,7 +66,7 @@ impl Drop for Camera {
 }
 
 fn locked(desk: &Mutex<Desk>) -> MutexGuard<'_, Desk> {
-    // All values of a desk are valid, also after a panic.
+    // All values of a desk are valid, even after a panic.
     desk.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -52,7 +52,7 @@ impl Robot {
         let _ = self.buttons.send(button.to_owned());
     }
 
-    /// The failure of its socket, once.
+    /// Returns the failure of the robot's socket, once.
     pub fn failure(&mut self) -> Option<io::Error> {
         let thread = self.thread.take_if(|thread| thread.is_finished())?;
         thread.join().unwrap_or_else(|_| Err(io::Error::other("its thread has panicked"))).err()
@@ -63,7 +63,7 @@ impl Drop for Robot {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
-            // Its failure would have been reported.
+            // The thread has already reported a failure.
             let _ = thread.join();
         }
     }

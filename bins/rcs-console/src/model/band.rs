@@ -87,7 +87,7 @@ pub struct Band {
     pub condition: Condition,
     pub why: String,  // the reason, or the command in progress
     pub next: String, // the operator's next step; empty if none is needed
-    /// Line of the job, hand, knob, tick, time, speed of the hand, name, and who commands: the most important first.
+    /// Job, hand, knob, tick, time, speed of the hand, name, and who commands; the most important comes first.
     pub facts: Vec<String>,
     pub role: &'static str, // `OPERATOR`, `VIEWER`, `ENDED` or `RECORDED`
     pub is_recorded: bool,  // true for a log, whose state is not the present state of a robot
@@ -135,7 +135,7 @@ pub fn band(model: &Model, source: &dyn Source) -> Band {
     let Finding { condition, why, next } =
         CHECKS.iter().find_map(|check| check(&scene)).unwrap_or_else(|| running(&scene));
     let next = match role {
-        // Nobody can act on a log; its failures have their own next steps.
+        // A log has no next step, except for failures.
         "RECORDED" if matches!(condition, Condition::Stopped | Condition::Paused) => String::new(),
         "VIEWER" if !next.is_empty() && condition != Condition::NoData => {
             format!("{next} (with --operate)")
@@ -306,7 +306,7 @@ impl Scene<'_> {
         }
     }
 
-    /// The operator's action before the same command can succeed, if it is known.
+    /// The action that the operator must take before the same command can succeed, if known.
     fn to_do(&self, failure: &Failure) -> Option<&'static str> {
         failure.kind.remedy().or_else(|| {
             let process = process_named(&failure.process)?;

@@ -183,7 +183,7 @@ fn part(part: &Part, [x, y, z]: [f64; 3]) -> Text {
     Text::plain(format!(" {:<17} {x:>8.2} {y:>8.2} {z:>8.2} in  {place}", part.name).trim_end())
 }
 
-/// E-stops, robot controller and job; then what only a live run has, or only a log.
+/// E-stops, robot controller and job, then the data that only a live run has, or only a log.
 fn surroundings(cell: &Cell) -> Section {
     let faint = |text: &str| Text::new(Tone::Faint, text);
     let mut lines = match cell.controller() {
@@ -252,7 +252,7 @@ mod tests {
     #[test]
     fn angles_are_shifted_into_the_limits() {
         let mut devices = DeviceInputs::default();
-        // 190 degrees back, in the resolver's counts.
+        // The joint turns back by 190 degrees, converted to resolver counts.
         devices.resolvers.counts[0] = RESOLVER_COUNTS * 170 / 360;
         let base = angles(&devices)[0].to_degrees();
         assert!((base + 190.0).abs() < 0.01, "{base}");

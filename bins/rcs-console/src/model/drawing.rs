@@ -125,8 +125,8 @@ impl Sheet {
         self.put((left, top), &border(['┌', '┐']), false);
     }
 
-    /// Write the name of a block where it covers neither a name nor a mark; without room a letter, which the legend
-    /// explains.
+    /// Write the name of a block where it covers neither a name nor a mark. Without room, write a letter, which the
+    /// legend explains.
     fn label(&mut self, name: &str, (left, bottom): Place, (right, top): Place) {
         let length = isize::try_from(name.chars().count()).unwrap_or(isize::MAX);
         let within = (top..=bottom).filter(|_| length < right - left).map(|line| ((left + 1, line), false));
@@ -151,7 +151,7 @@ impl Sheet {
         }
     }
 
-    /// True if a text fits there with a free column on both sides. `blank`: and covers no outline.
+    /// True if a text fits there with a free column on both sides. With `blank`, it must also cover no outline.
     fn is_free(&self, (column, line): Place, length: isize, blank: bool) -> bool {
         let is_clear = |at: isize| match self.inside((at, line)) {
             Some((x, y)) => !self.taken[y][x],
@@ -234,7 +234,7 @@ impl Drawing {
         Self { room: Room::new(cell), blocks: blocks.into_iter().filter(fits).collect() }
     }
 
-    /// Draw the cell for a terminal of this width and a body of this height, with the views side by side if larger.
+    /// Draw the cell for a terminal of this width and a body of this height, side by side if the views are larger so.
     #[must_use]
     pub fn sections(&self, joints: &Joints, width: usize, room: usize) -> Vec<Section> {
         let nearest = self.nearest(joints);

@@ -42,7 +42,7 @@ pub fn received(bytes: &[u8]) -> Vec<String> {
     })
 }
 
-/// The frames from the first byte on. Bytes that begin no frame are shown as they are.
+/// Splits bytes into frames. A byte at which no frame begins is shown unchanged.
 fn split(mut bytes: &[u8], frame: impl Fn(&[u8]) -> Option<(String, usize)>) -> Vec<String> {
     let mut found = Vec::new();
     while let Some((text, length)) = frame(bytes) {

@@ -33,7 +33,7 @@ pub enum Branch {
     Last,
     /// A process below one that is not the last at its level.
     Below,
-    /// A process below the last one at its level.
+    /// A process below one that is the last at its level.
     LastBelow,
 }
 
@@ -171,7 +171,7 @@ fn process_line(branch: Branch, process: ProcessId, picture: &Picture, cause: Op
     }
 }
 
-/// The row that fired, preceded by the unconfirmed goals of a finished command.
+/// The row that fired. The unconfirmed goals of a finished command precede it.
 fn row_text(said: &Said, fired: Option<Fired>) -> String {
     let row = fired.map_or_else(String::new, |fired| fired.text().to_string());
     if said.unconfirmed.is_none() { row } else { format!("unconfirmed: {}; {row}", said.unconfirmed) }

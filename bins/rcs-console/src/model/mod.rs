@@ -183,7 +183,7 @@ pub struct Model {
     /// Answer to the last key, if it had no other effect.
     pub answer: Option<String>,
     pub procedures: Progress,
-    /// True if the robot and its E-stops are at a port.
+    /// True if a port connects the robot and its E-stops, so that they are not simulated.
     pub robot_elsewhere: bool,
     /// True if the run ends when this console quits (`rcs-run --console`).
     pub ends_run: bool,

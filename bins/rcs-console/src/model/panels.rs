@@ -18,7 +18,7 @@ use super::{
 };
 use crate::rcs_console::source::Cell;
 
-/// The requests of the key list: a title and the words that follow it. An empty title has whole requests.
+/// The requests of the key list: a title, and the words that follow it. Words without a title are whole requests.
 const KEYS: [(&str, &[&str]); 7] = [
     ("job", &["go", "wait", "skip"]),
     ("", &["PAUSE", "leave", "joystick hold EMOVE", "joystick free EMOVE"]),
@@ -257,7 +257,7 @@ mod tests {
         let cell = Cell::Shown(Box::default());
         let all = sections(&DeviceInputs::default(), &CommonMemory::default(), &cell, Some(&operating));
         let lines: Vec<_> = all.into_iter().flat_map(|section| section.lines).collect();
-        // A text on the screen of the robot controller needs one more line.
+        // A message on the screen of the robot controller adds one line.
         assert!(lines.len() < 18 - 2, "{}", text(lines));
         assert!(lines.iter().all(|line| line.text.chars().count() <= 80), "{}", text(lines));
         let said = text(lines);

@@ -167,7 +167,7 @@ mod tests {
         tick::Tick,
     };
 
-    /// The names of the stages are those of the steps in Task's table.
+    /// The names of the stages are the step names in Task's table.
     #[test]
     fn startup_shows_the_stages_of_the_manual() {
         let tables = Ladder::processes()[ProcessId::Task.position()].tables;

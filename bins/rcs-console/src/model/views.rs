@@ -49,8 +49,8 @@ pub static SHOW_WORDS: [ShowWord; 5] = [
     },
 ];
 
-/// The vocabularies (IV.2.5; V to VII) and their processes; `None` for SDEF, which each board has, and for FDEF of the
-/// task data. That of T3 Interface has no known name (VI.1).
+/// The vocabularies (IV.2.5; V to VII) and their processes; `None` for SDEF, which exists on each board, and for FDEF
+/// of the task data. That of T3 Interface has no known name (VI.1).
 pub static VOCABULARIES: [(&str, Option<ProcessId>); 10] = [
     ("SDEF", None),
     ("TDEF", Some(ProcessId::Task)),

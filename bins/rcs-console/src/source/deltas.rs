@@ -1,5 +1,5 @@
-//! The ticks of a log in memory: differences from tick to tick, and a whole image once per second. They take a fiftieth
-//! of whole images, and any tick is decoded in at most 25 steps.
+//! The ticks of a log in memory: differences from tick to tick, and a whole image once per second. They need a fiftieth
+//! of the memory of whole images. Any tick is decoded in at most 25 steps.
 
 use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{

@@ -44,7 +44,7 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// Damaged parts are skipped, and described in [`About::damage`]. Errors: not a log of this program, or no tick.
+    /// Skips damaged parts ([`About::damage`]). Fails if the log is of another program, or has no tick.
     pub fn open(path: &Path) -> Result<Self, ConsoleError> {
         let failed = |source: ReadError| ConsoleError::Log { path: path.to_owned(), source };
         let log = Log::open(path).map_err(failed)?;

@@ -9,8 +9,8 @@ use runtime::event::Event;
 const FLOOR: &str = "floor";
 const WARNING: &str = "cell.warning";
 
-/// The events between two views, as the lines of a log: with the tick after that of the event. Before the first view
-/// only a loss of pressure that lasts is an event.
+/// The events between two views, as the lines of a log. A line has the tick after that of its event. Without an earlier
+/// view, only a present loss of pressure is an event.
 pub fn lines(before: Option<&CellView>, now: &CellView) -> Vec<LogLine> {
     let cut_before = before.map_or(Tick::BEFORE_START, |before| before.controller.cut_tick);
     let is = &now.controller;
@@ -21,7 +21,7 @@ pub fn lines(before: Option<&CellView>, now: &CellView) -> Vec<LogLine> {
         lines.push(line(is.cut_tick.next(), CellEvent::Robot(RobotEvent::Sinks(cut))));
     }
     let Some(before) = before else { return lines };
-    // While FAULT RESET is lit the screen has the error of the lamp, which is not an event.
+    // While FAULT RESET is lit, the screen shows the error of the lamp, which is not an event.
     if !is.lamps.fault_reset && is.screen_tick > before.controller.screen_tick {
         let (level, source, text) = (Level::Error, "cell".to_owned(), is.screen.to_string());
         lines.push(LogLine { tick: is.screen_tick.next(), level, source, text, code: WARNING.to_owned() });
@@ -102,7 +102,7 @@ mod tests {
         assert_eq!(lines(Some(&pressed), &reset), [], "the warning is an old one");
     }
 
-    /// The views must contain the texts in full; otherwise the cause of a loss is not found.
+    /// The views must contain the full texts. Otherwise the cause of a loss is not found.
     #[test]
     fn every_loss_of_pressure_is_found_by_its_text() {
         for site in EStop::ALL.iter().copied() {

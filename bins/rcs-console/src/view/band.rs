@@ -14,10 +14,10 @@ use crate::rcs_console::model::{
     band::{Band, Condition},
 };
 
-/// Columns of the state: a present one as ` !! FAULT    `, a recorded one as ` LOG [!! FAULT] `.
+/// Columns of the state. A present state is shown as ` !! FAULT `, a recorded one as ` LOG [!! FAULT] `.
 const STATE: usize = 13;
 
-/// The lines of the band. The band of a present state is filled, that of a log is not.
+/// The lines of the band. The band of a present state is filled. The band of a log is not filled.
 pub fn lines(band: &Band, look: Look, width: usize) -> [Line<'static>; 3] {
     let (shape, word) = (band.condition.shape(), band.condition.word());
     let state =

@@ -1,4 +1,4 @@
-//! The ladder: in columns, or on a large terminal the hierarchy next to the process at the cursor.
+//! The ladder: in columns or, on a large terminal, as the hierarchy next to the process at the cursor.
 
 use interfaces::ProcessId;
 use ratatui::{
@@ -21,7 +21,7 @@ use crate::rcs_console::{
 
 const LEAST_TEXT: usize = 24; // least number of columns for the text of a row
 const COMMAND: usize = 19; // columns for a command on the smallest terminal
-/// Smallest body with both hierarchy and process: columns, and two lines per process or neighbour.
+/// Smallest body with both hierarchy and process, as columns and lines. Each process or neighbour takes two lines.
 const BESIDE: (usize, usize) = (120, 33);
 const HIERARCHY: usize = 43; // columns of the hierarchy without the row, if the process is shown too
 const ROW: (usize, usize) = (15, 30); // least and most columns for its row
@@ -32,7 +32,7 @@ struct Widths {
 }
 
 impl Widths {
-    /// Commands are not cut if there is room; the text of the rows gets the rest.
+    /// Commands are truncated only without room. The text of the rows gets the rest.
     fn of(width: usize, ladder: &[ladder::Line]) -> Self {
         let extra = width.saturating_sub(80);
         let longest = ladder.iter().map(|line| line.command.chars().count()).max().unwrap_or_default();

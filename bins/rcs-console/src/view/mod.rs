@@ -1,6 +1,6 @@
 //! Draws the model as a frame of text.
 //!
-//! Line 1 has the screens, lines 2 to 4 the state band, the last line the keys, and the one before it the news.
+//! Line 1 shows the screens, lines 2 to 4 the state band. The last line shows the keys, the line above it the news.
 
 mod band;
 mod help;
@@ -123,7 +123,7 @@ fn screen(
 ) -> (Vec<Line<'static>>, Reach) {
     let about = source.about();
     let mut all = vec![tabs(model.screen, look, width)];
-    // A block of 16 lines with its remarks needs the line of the next step.
+    // A block of 16 lines with its remarks fits only if the line of the next step is free.
     let is_editing = model.screen == Screen::Terminal && model.terminal.editor.is_some();
     let saved = usize::from(is_editing);
     all.extend(band::lines(&band_of(model, source), look, width).into_iter().take(BAND - saved));

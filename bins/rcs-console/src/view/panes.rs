@@ -1,4 +1,4 @@
-//! Sections one above the other: in panes that share the height, or in one column with scrolling.
+//! Draws sections one above the other, in panes that share the height or in one scrolled column.
 
 use interfaces::Said;
 use ratatui::text::Line;
@@ -101,7 +101,7 @@ pub fn list(sections: &[Section], look: Look, width: usize, room: usize) -> Vec<
     for section in sections {
         let (body, at) = (body(section, width), at(section, width));
         let height = room.saturating_sub(lines.len() + 1);
-        // The details of that line follow it.
+        // The details of that line follow it, so most of the space is below it.
         let start = at.saturating_sub(height / 3).min(body.len().saturating_sub(height));
         let more = more(start, body.len(), height);
         lines.push(look.line(Tone::Plain, rule(&format!("{}{more}", section.title), width)));

@@ -1,4 +1,4 @@
-//! The start-up of the manual (IV.3.3) and a taught point (III.3.3) with an operator's keys. It is recorded for
+//! The start-up of the manual (IV.3.3) and a taught point (III.3.3) with an operator's keys. For a recording for
 //! `asciinema play`: `RCS_RECORDING=docs/console.cast cargo test --release -p programs --test console recording`.
 
 use std::{env, fmt::Write as _};
@@ -10,7 +10,7 @@ use super::*;
 
 const LAST: &str = "19b"; // the last step of IV.3.3
 const LOOK: &str = "6"; // the step that the operator must confirm
-/// Time after which Enter is repeated because the robot controller was not ready; ten times as long in a recording.
+/// Time after which Enter is repeated if the robot controller was not ready. In a recording it is ten times as long.
 const AGAIN: Duration = Duration::from_millis(300);
 
 /// A recording in version 2 of asciicast: a header, then one line per piece of output.

@@ -14,13 +14,13 @@ use super::{
 };
 use crate::story::{CommandHistory, CommandStory};
 
-/// A process whose rows fired differently, or at other times.
+/// A process in which other rows fired, or the same rows at other times.
 #[derive(Debug, Serialize)]
 struct Rows {
     process: String,
     ticks: u64,       // number of compared ticks whose headers name different rows
     same_order: bool, // true if the same rows fired in the same order, at other times
-    /// Tick of both runs where the order or else the times first differ. `a` and `b` are the rows.
+    /// Tick in each run where the order of the rows first differs, or else their times. `a` and `b` are the rows.
     first: [u64; 2],
     a: String,
     b: String,
@@ -50,7 +50,7 @@ pub struct Changes {
     times: Vec<Time>,
 }
 
-/// Ticks of a process whose headers name different rows: their number, the first one, and its rows.
+/// Ticks in which the headers of a process name different rows: their number, the first tick, and its rows.
 type Others = Option<(u64, [u64; 2], [Option<Decided>; 2])>;
 
 impl Changes {
@@ -135,7 +135,7 @@ impl Changes {
     }
 }
 
-/// Differences in the rows of a process, given by its position; `others` are the ticks with another row.
+/// Differences in the rows of the process at a position; `others` are the ticks with another row.
 fn rows(process: usize, others: Others, a: &Trace, b: &Trace) -> Option<Rows> {
     let (was, is) = (a.decisions(process), b.decisions(process));
     let parted = was.iter().zip(&is).position(|((_, was), (_, is))| was != is);

@@ -89,7 +89,7 @@ struct Changed {
 pub struct Words(Vec<Changed>);
 
 impl Words {
-    /// Changes a word, on top of all changes so far. `+=` and `-=` need a number.
+    /// Changes a word, in addition to all changes so far. `+=` and `-=` need a number.
     pub fn change(&mut self, store: &Store, datum: &Datum) -> Result<(), DatumError> {
         let known = |changed: &Changed| changed.file == datum.file && changed.number.number == datum.block;
         if let Some(block) = self.0.iter_mut().find(|changed| known(changed)) {
@@ -114,7 +114,7 @@ impl Words {
     }
 }
 
-/// The block of a datum; of several with its number, the newest.
+/// The block of a datum. If several blocks have its number, the newest is used.
 fn find(sources: &[Source], datum: &Datum) -> Result<Changed, DatumError> {
     let Datum { file, block, .. } = datum;
     let of_name: Vec<&Source> = sources.iter().filter(|source| source.name == *file).collect();
@@ -148,7 +148,7 @@ impl Datum {
         Ok(())
     }
 
-    /// The line with its word replaced; a longer word uses up the blanks before it.
+    /// The line with its word replaced. A longer word extends into the blanks before it.
     fn edited(&self, at: usize, line: &str) -> Result<String, DatumError> {
         let missing = || DatumError::Word { line: at, word: self.word, text: line.trim().to_owned() };
         let found = line.split_whitespace().nth(self.word - 1).ok_or_else(missing)?;

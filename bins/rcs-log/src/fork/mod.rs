@@ -1,7 +1,7 @@
 //! `rcs-log fork`: repeats the run of a log with a change.
 //!
 //! The run is repeated from tick 0 with the job, data and seed of the log ([`runtime::repeat`]), and compared bit for
-//! bit. After a given tick it is changed ([`change`]). A run of four minutes takes about a second.
+//! bit. After a given tick it is changed ([`change`]). Repeating a run of four minutes takes about a second.
 
 mod change;
 mod datum;

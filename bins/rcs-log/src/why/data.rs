@@ -1,5 +1,5 @@
-//! The task data of the last commands, each with file, block and line: point of the path, grip with movetable and
-//! sizes, location. Records are found by their numbers, because forms can have the same text.
+//! The task data of the last commands, each with file, block and line: the point of the path, the grip with movetable
+//! and sizes, the location. Records are found by number, because two forms can have the same text.
 
 use interfaces::{
     CommonMemory,
@@ -16,7 +16,7 @@ use taskdata::{
     load::{At, Store},
 };
 
-/// The data that the last command of a process used. `way` is the path of E-move when it gave Prim's last command.
+/// The data that the last command of a process used. `way` is E-move's path at the time of Prim's last command.
 pub fn used(store: &Store, process: ProcessId, memory: &CommonMemory, way: Option<Way>) -> Vec<String> {
     let (order, motion) = (&memory.subtask.emove, &memory.emove.prim);
     let mut found = Found { store, view: store.view(), lines: Vec::new() };
@@ -115,7 +115,7 @@ impl Found<'_> {
 /// The line of the path to which a command sends Prim.
 fn path_point<'a>(data: &TaskData<'a>, way: &Way, motion: &PrimCommand) -> Option<&'a PathPoint> {
     let written = route_of(way, data).ok()?.written(way.next, data)?;
-    // A command without a path, such as PAUSE, has other parameters.
+    // The parameters differ for a command without a path, such as PAUSE.
     (written.para == motion.trajectory_parameters).then_some(written)
 }
 
@@ -133,7 +133,7 @@ fn relative_move<'a>(
     Relative::ALL.iter().filter_map(|relative| relative.record(&order.site, data)).find(is_meant)
 }
 
-/// The number of a record of a file: records with the same contents are different.
+/// The number of a record of a file. Records with equal contents are still different records.
 fn position<T>(file: &[T], record: &T) -> Option<usize> {
     file.iter().position(|candidate| std::ptr::eq(candidate, record))
 }

@@ -1,8 +1,8 @@
 //! The inputs of the devices during a command: the end of a causal chain.
 //!
 //! A switch has its value and the ticks of its changes, a converter its range. One line lists all inputs that never
-//! changed; absent devices are left out. A guarded move has its sensor: the condition that would have ended the move,
-//! the nearest reading, and the distance that the robot moved meanwhile.
+//! changed; absent devices are left out. For a guarded move the lines state the condition that would have ended it, the
+//! nearest reading, and the distance that the robot moved.
 
 use geometry::pose::WireFrame;
 use interfaces::{ExternalInputs, prim::PrimVerb};
@@ -202,7 +202,7 @@ impl Guard {
     }
 }
 
-/// How near a force came to its threshold, or how far it went beyond, as text.
+/// The distance of a force from its threshold, or its excess over it, as text.
 fn force_words(sensor: &SensorPara, nearest: f64, way: &str) -> String {
     let (name, threshold) = (sensor_name(sensor), sensor.threshold);
     let unit = if sensor.source == SensorSource::My { "in lb" } else { "lb" };

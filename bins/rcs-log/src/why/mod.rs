@@ -78,7 +78,7 @@ pub struct Story {
     report: Report,
     first_cause: String,
     evidence: Vec<String>,
-    /// Tick of the first command that led to the failure: events in the cell can be related to it from then on.
+    /// Tick of the first command that led to the failure. Later events in the cell can be related to it.
     #[serde(skip)]
     begun: u64,
 }
@@ -129,7 +129,7 @@ pub fn explanation(log: &Log, path: &Path, requested: Option<u64>) -> Result<Exp
     Ok(explanation)
 }
 
-/// What led to a failure: as the run has attached it, or from the ticks of the log.
+/// The chain of causes of a failure, as attached by the run or else from the ticks of the log.
 fn chain_of(failed: &FailureResult, history: &History) -> Chain {
     failed.chain.clone().unwrap_or_else(|| Chain::of(&failed.account, history))
 }

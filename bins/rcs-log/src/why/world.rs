@@ -20,7 +20,7 @@ pub struct World {
     pub data: Vec<String>,   // the data that the last row used, with file, block and line
 }
 
-/// The last command to Prim, and the path of E-move when it gave that command.
+/// The last command to Prim, and the path of E-move at that time.
 #[derive(Default)]
 struct Motion {
     number: u32,

@@ -38,7 +38,7 @@ impl Facility {
     }
 }
 
-/// A run between two ticks. A copy continues from the same state.
+/// A run between two ticks. Each copy continues from the same state.
 #[derive(Clone)]
 pub struct Branch<'f> {
     facility: &'f Facility,
@@ -98,7 +98,7 @@ impl<'f> Branch<'f> {
         self.closed.line_mut().forget_past(now);
     }
 
-    /// Digest of `beside` and of everything on which the next ticks depend, without the past ([`past`]).
+    /// Digest of `beside` and of all state on which the next ticks depend, without the past ([`past`]).
     pub fn state(&self, beside: &impl fmt::Debug) -> Result<Digest, Error> {
         let Self { closed, command_box, .. } = self;
         let cell = closed.workstation.cell.save().map_err(|error| Error::Fork(error.to_string()))?;

@@ -58,7 +58,7 @@ impl Coverage {
     }
 }
 
-/// True if a header can name a row with this action: not one that passes on, nor one of EXECUTE that accepts.
+/// True if a header can name a row with this action. It names no row that passes on, or accepts in EXECUTE.
 fn is_named(table: &str, action: &str) -> bool {
     action != "consult" && (table != EXECUTE.name || action == "Refuse")
 }

@@ -6,11 +6,11 @@ use geometry::frame::{Frame, Vector};
 use interfaces::device::KNOB_FULL;
 use plant::{BoxAction, BoxButton, Cell, Placement, WorkstationAction, WorkstationError};
 
-/// Velocity of the joystick box with its knob at the end, in/s.
+/// Velocity of the joystick box with its knob at the maximum, in/s.
 const BOX_SPEED: f64 = levels::prim::manual::SPEED;
 const SECONDS: f64 = 1.0; // time in which a person moves the robot a short way, s
 const FASTEST: f64 = 0.5; // greatest share of the box's velocity
-/// Least share of the box's velocity. A slower robot would not stop at the intended place.
+/// Least share of the box's velocity. A slower robot would not stop at the intended position.
 const SLOWEST: f64 = 0.02;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub enum Follow {
     Same,
     /// PAUSE, and the next command of the job.
     Next,
-    /// The previous command again, which has finished, and then the interrupted one.
+    /// The previous, finished command again, and then the interrupted one.
     Again,
 }
 
@@ -138,7 +138,7 @@ impl Lead {
         (share * f64::from(KNOB_FULL)) as u16
     }
 
-    /// The control to hold in the next tick; `None` if the robot is there.
+    /// The control to hold in the next tick; `None` if the robot has arrived.
     pub fn step(&mut self, cell: &Cell) -> Option<BoxAction> {
         let at = cell.t3().arm().tool().position;
         let moved = at - *self.start.get_or_insert(at);
@@ -220,7 +220,7 @@ pub fn change(cell: &mut Cell, what: &What) -> Result<(Vec<u32>, Vec<Undo>), Str
             let new = cell.next_part_number();
             let put = |part: &str, frame: Frame| WorkstationAction::Put { part: part.to_owned(), frame };
             if cell.workstation(&put(kind, raised)).is_err() {
-                // The new part does not fit there. The part that is put back gets another number.
+                // The new part does not fit, so the old one returns. It gets another number.
                 cell.workstation(&put(&name, frame)).map_err(said)?;
                 return Ok((vec![id, new], Vec::new()));
             }

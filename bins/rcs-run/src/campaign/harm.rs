@@ -126,7 +126,7 @@ pub struct Damage {
     pub what: String,
     /// The sentence without numbers, by which harms are counted.
     pub kind: String,
-    /// False for an arm without pressure, a person at the joystick box, or the robot controller's travel to HOME.
+    /// False if an arm without pressure, a person at the joystick box, or the travel to HOME caused the harm.
     pub commanded: bool,
     contact: Option<usize>,
 }
@@ -161,8 +161,8 @@ impl HarmMonitor {
         self.harms.iter().find(|harm| harm.commanded).or_else(|| self.harms.first())
     }
 
-    /// True if the difference `unlike` of a part results from a slide, which then is harm: no sensor shows where in the
-    /// fingers the part is.
+    /// True if the difference `unlike` of a part results from a slide. The slide then is harm, because no sensor shows
+    /// where in the fingers the part is.
     pub fn attribute_to_slide(&mut self, unlike: &str) -> bool {
         match self.slide.take_if(|(part, _)| unlike.is_empty() || unlike.starts_with(part.as_str())) {
             Some((_, harm)) => {
@@ -195,7 +195,7 @@ impl HarmMonitor {
             }
         }
         self.seen = contacts.len();
-        // The consequence of a contact becomes known after the contact.
+        // The consequence of a contact is detected after the contact.
         for harm in &mut self.harms {
             if let Some(contact) = harm.contact.and_then(|at| contacts.get(at)) {
                 harm.what = contact.to_string();
@@ -216,7 +216,7 @@ impl HarmMonitor {
         }
     }
 
-    /// True if the part has slid in the fingers, or was in a contact that no commanded point has caused.
+    /// True if the part has slid in the fingers, or was in a contact without a commanded cause.
     fn is_moved(&self, part: &str) -> bool {
         self.slide.as_ref().is_some_and(|(slid, _)| slid == part)
             || self.moved.iter().any(|moved| moved == part)

@@ -86,7 +86,7 @@ fn word_of(process: ProcessId) -> &'static str {
 }
 
 impl Kind {
-    /// `restart` selects one kind per process, `fault` one per file that can be switched on. Errors list all words.
+    /// `restart` selects one kind per process, `fault` one per fault file that can be used. An error lists all words.
     pub fn named(text: &str, data: &Path, cell: &CellDescription) -> Result<Vec<Self>, Error> {
         let process = |name: &str| ProcessId::ALL.iter().copied().find(|process| word_of(*process) == name);
         let found = match text.split_once(':') {
@@ -156,7 +156,7 @@ impl Kind {
         matches!(self, Self::Pause | Self::Hold | Self::Estop) || self.is_for_good()
     }
 
-    /// True if nothing ends the interruption.
+    /// True if the interruption never ends.
     #[must_use]
     pub const fn is_for_good(&self) -> bool {
         matches!(self, Self::Cut | Self::Lost(_))

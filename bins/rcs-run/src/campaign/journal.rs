@@ -1,7 +1,7 @@
 //! The file to which a campaign appends each judged branch, so that a stopped campaign can continue.
 //!
-//! Each line is a JSON object: the campaign, the branch, and the rows and states that it was the first to reach; a
-//! drawn branch lists all. Lines are used only with the same undisturbed run, program and procedure.
+//! Each line is a JSON object: the campaign, the branch, and the rows and states that it was the first to reach. A
+//! drawn branch lists all. A campaign reads only lines with its own undisturbed run, program and procedure.
 
 use std::{
     borrow::Cow,

@@ -1,12 +1,12 @@
-//! States of completed branches. A branch that reaches one of them is done, too.
+//! States of completed branches. A branch that reaches such a state stops and is done, too.
 //!
 //! Two branches with the same state in the same tick, except for the values that [`past`](super::past) removes,
 //! continue alike. Many interruptions leave no trace, or the same trace as at another tick.
 //!
-//! The judge of confirmations does not belong to the state: whether a confirmation is true depends on the command, the
-//! cell, and where the robot has released a part. Branches in which a part has slid are not compared, and states are
-//! known only if all confirmations of the branch were true. The number of confirmations from a state to the end is
-//! stored with it.
+//! The judge of confirmations does not belong to the state. The truth of a confirmation depends on the command, the
+//! cell, and the place where the robot has released a part. Branches in which a part has slid are not compared, and
+//! states are known only if all confirmations of the branch were true. The number of confirmations from a state to the
+//! end is stored with it.
 //!
 //! ```text
 //!   branch 1  --x----------+-----------+-----------+------- done     x  interrupted

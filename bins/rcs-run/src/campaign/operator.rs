@@ -196,14 +196,14 @@ impl<'f> Operator<'f> {
         self.doing = doing;
     }
 
-    /// True if the operator has sent the robot elsewhere, instead of the command of the job.
+    /// True if the operator has sent another motion instead of the command of the job.
     #[must_use]
     pub const fn has_replaced(&self) -> bool {
         matches!(self.doing, Doing::Own(Then::SameCommand))
     }
 
-    /// The state after tick `now` on which the operator's next action depends. Commands are numbered from `newest`. The
-    /// beginning of a command is not part of it after [`Self::waits_until`].
+    /// The state after tick `now` on which the operator's next action depends. Commands are numbered from `newest`.
+    /// After [`Self::waits_until`], the state excludes the start of the command.
     pub fn state(&self, now: Tick, newest: u32) -> impl fmt::Debug {
         let is_echoed = now.since(self.began) > ECHO_LIMIT.max(REST_LIMIT);
         let is_timed = self.doing != Doing::Command || !is_echoed || self.second_pause.is_some();
@@ -258,7 +258,7 @@ impl<'f> Operator<'f> {
         match status.report {
             HwsReport::Finished | HwsReport::Idle => Some(Ok(())),
             HwsReport::Error => Some(Err(status.code.text().to_owned())),
-            // Task reports this until the processes below it, which it has stopped, are at rest.
+            // Task reports this until the stopped processes below it are at rest.
             HwsReport::JoystickOn => (ticks > REST_LIMIT).then(|| Err("the joystick box is on".to_owned())),
             HwsReport::Executing => (ticks > TIME_LIMIT).then(|| Err("not finished within 300 s".to_owned())),
         }
@@ -350,7 +350,7 @@ impl Commander for Operator<'_> {
         workstation: &mut SimulatedWorkstation,
     ) -> Option<HwsCommand> {
         for later in self.later.extract_if(.., |later| later.due <= tick) {
-            // The cell can refuse an action that is too late because its command was interrupted.
+            // An interruption can delay an action so that the cell refuses it.
             let _ = workstation.begin(&later.action, &later.text);
         }
         if let Some(fault) = workstation.fault() {

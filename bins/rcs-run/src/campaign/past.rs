@@ -1,4 +1,4 @@
-//! Removes the past that the control processes no longer act on from a copy of their state.
+//! Removes, from a copy of their state, the past on which the control processes no longer act.
 //!
 //! Two states that differ only in these values continue alike: numbers of commands and pose records, which are only
 //! compared with each other (renumbered from the newest); rows in headers and counters of the line; expired times;
@@ -45,9 +45,9 @@ pub fn forget(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick) {
     }
 }
 
-/// Number the commands of each process backwards from the newest one, which becomes [`NEWEST`].
+/// Number the commands of each process backwards; the newest becomes [`NEWEST`].
 fn count_commands(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick) {
-    // A commander, the number in its buffer, and the echoes of the process below in its state and its status.
+    // Takes a commander, the number in its buffer, and the echoes in the subordinate's state and status.
     macro_rules! count {
         ($(
             $above:ident: $commander:expr, $command:ident => $below:ident $(. $execution:ident)?;
@@ -80,7 +80,7 @@ fn count_commands(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick
 
 const NEWEST: u32 = 1000; // the number that the newest command gets; 0 means none
 
-/// Number a commander's commands. The send time of the last one matters until it is echoed everywhere.
+/// Number a commander's commands. The send time of the last command matters until every echo has arrived.
 fn settle(commander: &mut Commander, numbers: [&mut u32; 3], now: Tick) {
     let newest = commander.number;
     if numbers.iter().all(|number| **number == newest) && commander.sent != now {
@@ -210,7 +210,7 @@ mod tests {
         for writer in [pose_range::TASK, pose_range::SUBTASK, pose_range::EMOVE, pose_range::PRIM] {
             assert!(numbers.iter().any(|one| one & pose_range::WRITER == writer), "none of {writer:x}");
         }
-        // Each number is one that no place among those in use has.
+        // No record in use has any of these numbers.
         for number in pose_numbers(&mut memory, &mut ladder).into_iter().filter(|one| numbers.contains(one)) {
             *number += 1_000_000;
         }

@@ -27,8 +27,8 @@ pub struct Plan {
 
 type Work<'f> = (Arc<Branch<'f>>, usize);
 
-/// Run a branch for each plan, up to a known state. Calls `done` with each new result and its coverage. The return
-/// values of `done` are in the order of the plans, for any number of `threads`.
+/// Run a branch for each plan to its end, or up to a known state. Calls `done` with each new result and its coverage.
+/// The return values of `done` are in the order of the plans, for any number of `threads`.
 pub fn run<T: Send>(
     facility: &Facility,
     parent: &Parent,

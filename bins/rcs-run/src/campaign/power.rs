@@ -1,4 +1,4 @@
-//! A loss of power: the controller keeps the bytes of its journal, and nothing else.
+//! A loss of power: only the bytes of the controller's journal remain.
 
 use record::journal::{self, Entry, FormatError, Identity};
 

@@ -21,7 +21,7 @@ use super::{
 const BETWEEN: [u64; 3] = [3, 60, 600];
 const ROUND: usize = 64;
 const ROW: usize = 20; // weight of a new row, in new states
-/// Greatest weight of a branch, since the first ones are the first to reach everything.
+/// Greatest weight of a branch. Without it, the first branches would dominate, because they reach all rows first.
 const MOST: usize = 5 * ROW;
 const NEAR: u64 = 12; // a changed branch begins this many ticks sooner or later, at most
 const AGAIN: usize = 8; // number of repeated draws if a branch was drawn before
@@ -40,7 +40,7 @@ pub struct Draw {
     random: ChaCha8Rng,
     last: u64,
     changes: Vec<u64>,
-    /// The kinds that are drawn, grouped by word, and the stops that follow if the branches are judged at rest.
+    /// The drawn kinds, grouped by word, and the stops that end branches judged at rest.
     kinds: Vec<Vec<Kind>>,
     stops: Vec<Vec<Kind>>,
     drawn: HashSet<(u64, String)>,
@@ -49,8 +49,8 @@ pub struct Draw {
 }
 
 impl Draw {
-    /// Half of the branches begin in ticks in which something changes. One that is judged at rest gets a stop at its
-    /// end.
+    /// Half of the branches begin in ticks in which a step or a command changes. A branch that is judged at rest ends
+    /// with a stop.
     #[must_use]
     pub fn new(parent: &Parent, kinds: &[Kind], procedure: Procedure, settings: Settings) -> Self {
         let rest = procedure.until == Until::Rest;
@@ -123,7 +123,7 @@ impl Draw {
         Some((at, drawn))
     }
 
-    /// Change one thing of a branch: its tick, an interruption, or the ticks before one; or add an interruption.
+    /// Change a branch at one point: its tick, an interruption, or the ticks before one. Or add an interruption.
     fn changed(&mut self, plan: &Plan) -> Option<(u64, Vec<Interruption>)> {
         let mut drawn = plan.series.interruptions().to_vec();
         drawn.truncate(drawn.len() - usize::from(!self.stops.is_empty()));
@@ -163,7 +163,7 @@ fn kind(groups: &[Vec<Kind>], random: &mut ChaCha8Rng) -> Option<Kind> {
     groups.choose(random)?.choose(random).cloned()
 }
 
-/// The smallest series for which `is_same` holds, without unneeded interruptions and with shorter times between.
+/// The smallest series for which `is_same` holds, without unneeded interruptions and with shorter times between them.
 pub fn smallest<E>(
     series: &Series,
     mut is_same: impl FnMut(&Series) -> Result<bool, E>,

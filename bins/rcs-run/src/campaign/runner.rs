@@ -29,7 +29,7 @@ use crate::rcs_run::error::Error;
 pub enum Keep {
     /// Rows and states that no earlier branch has reached.
     New,
-    /// The whole coverage: it decides the next draw.
+    /// The whole coverage, on which the next draw depends.
     All,
 }
 
@@ -76,7 +76,7 @@ impl<'a> Runner<'a> {
             self.journal.write(&result, &kept)?;
             Ok((result, kept))
         };
-        // A branch reaches nothing new after a known state; a draw needs the coverage of each branch.
+        // A branch reaches nothing new after a known state. But a draw needs the whole coverage of each branch.
         let states = (keep == Keep::New).then_some(&self.known);
         let mut run =
             pool::run(self.facility, self.parent, &missing, self.threads, states, &done)?.into_iter();

@@ -36,7 +36,7 @@ pub const fn at_box(action: BoxAction) -> ScriptStep {
     ScriptStep::Workstation(WorkstationAction::Joystick(action))
 }
 
-/// The actions at the box between the two throws of the frame switch.
+/// Switches the box on, performs the actions, and switches it off again.
 fn joystick(knob: u16, steps: impl IntoIterator<Item = ScriptStep>) -> Vec<ScriptStep> {
     // A robot in motion ramps down first.
     let mut all = vec![
@@ -107,7 +107,7 @@ pub struct Script {
     journal: Vec<u8>, // the bytes of the journal
 }
 
-/// Move the robot over a way, 0.01 in, world, and return control of it.
+/// Move the robot along a vector, 0.01 in, world, and return its control to the processes.
 pub fn lead(way: [i32; 3]) -> Vec<ScriptStep> {
     let lead = Lead::by(way);
     joystick(lead.knob(), [ScriptStep::Lead(lead), ScriptStep::Wait(25)])
@@ -119,7 +119,7 @@ impl Script {
         Self { steps, at: 0, until: None, height: 0.0, lead: None, undo: Vec::new(), journal: Vec::new() }
     }
 
-    /// Undoes a person's changes, because of which a command was refused. `None` without changes.
+    /// Undoes a person's changes that caused the refusal of a command. `None` without changes.
     #[must_use]
     pub fn undone(&self, what: &What) -> Option<Self> {
         if let What::Jog(way) = what {
@@ -227,7 +227,7 @@ impl Script {
                     }
                 }
                 ScriptStep::Enter => {
-                    // Only a warning accepts the key.
+                    // The key has an effect only during a warning.
                     let _ = branch.closed.workstation.cell.press(Key::Enter);
                 }
                 ScriptStep::StartUp => self.start_up(branch),

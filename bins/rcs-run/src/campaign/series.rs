@@ -1,4 +1,4 @@
-//! A series of interruptions: `hold+35:pause` is Hold, and a PAUSE 35 ticks after Hold has ended.
+//! A series of interruptions: `hold+35:pause` means a hold, and a PAUSE 35 ticks after the hold has ended.
 
 use std::{fmt, path::Path};
 

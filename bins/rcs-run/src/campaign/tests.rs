@@ -156,7 +156,7 @@ fn command_finished_during_interruption_is_not_repeated() {
     }
 }
 
-/// SHUTDOWN moves nothing: after a MOVE elsewhere the hand stays there.
+/// SHUTDOWN moves nothing, so the hand stays where a MOVE has left it.
 #[test]
 fn shutdown_replaced_by_a_move_is_done() {
     let facility = with_job("== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n== SHUTDOWN -- +0 -- 0 +0 -- 0 -- 0\n");
@@ -417,7 +417,7 @@ fn series_name_parses_back() {
 fn draw_depends_on_its_seed_alone() {
     let (facility, parent) = empty_move();
     let kinds = Kind::named("all", Path::new(DATA), &facility.description).expect("there are some");
-    // As if each branch had covered only its own tick.
+    // Each branch is treated as covering only its own tick.
     let draw = |seed, learns: bool| {
         let mut draw = Draw::new(&parent, &kinds, PROCEDURE, Settings { branches: 200, longest: 3, seed });
         let mut plans = Vec::new();

@@ -1,6 +1,6 @@
 //! Interrupts one branch, and lets an operator follow the recovery procedure until the branch can be judged.
 //!
-//! [`judgement`] decides when this is, and gives the verdict.
+//! [`judgement`] decides when, and gives the verdict.
 
 mod judgement;
 
@@ -89,7 +89,7 @@ struct Trial<'f, 'p> {
     remedied: bool, // true if the remedy was applied and the disturbance undone
 }
 
-/// Interrupt a fork after its last tick, and judge the branch. It stops at a known state; if it is done, its states
+/// Interrupt a fork after its last tick, and judge the branch. It stops at a known state. If it is done, its states
 /// become known.
 pub fn run(
     facility: &Facility,
@@ -234,7 +234,7 @@ impl Trial<'_, '_> {
         if then == Some(Follow::Next) {
             self.operator.give_up();
         }
-        // PAUSE is the interruption, or the first action of an operator who has worked at box or panel.
+        // PAUSE is the interruption, or the operator's first action after working at box or panel.
         self.operator.pause(at);
     }
 
@@ -325,7 +325,7 @@ impl Trial<'_, '_> {
                 commands.take(2).last().unwrap_or(usize::MAX)
             }
         };
-        // A delay that differs between branches, but not between runs.
+        // The delay differs between branches, but not between runs.
         self.operator.interrupt((kind == Kind::PauseTwice).then_some(1 + at.0 * 37 % 120));
         self.following = kind.leaves_command() && self.motion.is_none();
         self.send(&kind, observer);

@@ -1,4 +1,4 @@
-//! `rcs-run check --explain COMMAND`: the complete motion of a command, as the levels find it in the task data.
+//! `rcs-run check --explain COMMAND`: shows the complete motion of a command from the task data.
 //!
 //! E-move's own route ([`paths::walk`]) looks up places, grips, approaches and trajectories, so the output
 //! shows the motion of a run. Times are those of Prim's motion with the knob at full speed. They exclude

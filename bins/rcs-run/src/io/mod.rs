@@ -31,7 +31,7 @@ use runtime::StartError;
 use crate::rcs_run::{arguments::MappingArgument, error::Error};
 
 const PERIOD: Duration = Duration::from_millis(20); // time between two exchanges
-/// Longest time for the set-up of a device, beyond its watchdog: one of an earlier run must fire first.
+/// Time limit of a device's set-up, in addition to its watchdog: a watchdog of an earlier run must expire first.
 const SET_UP: Duration = Duration::from_secs(3);
 const ENDING: usize = 15; // number of exchanges after which the end of a session is confirmed, or not
 
@@ -54,7 +54,7 @@ impl Bench {
         Ok(Self { mapping, _locks: locks })
     }
 
-    /// A session with a device that is set up; with [`Mode::Watch`] it has written no output.
+    /// Sets up a session with a device. With [`Mode::Watch`] it writes no output.
     pub fn probe(&self, index: usize, mode: Mode) -> Result<Probe, Hindrance> {
         let device = &self.mapping.devices[index];
         let text = |error: DeviceError| Hindrance::new(format!("{}: {error}", device.name));
@@ -83,7 +83,7 @@ impl Bench {
 pub struct Hindrance {
     /// A sentence with the device.
     pub text: String,
-    /// Its outputs, if some are on that may not be on at rest.
+    /// The device's outputs, if some are on that must be off at rest.
     pub on: Option<Box<OutWords>>,
 }
 
@@ -131,7 +131,7 @@ impl Probe {
         &mut self.link
     }
 
-    /// End: outputs become safe, except those that may be on at rest. Returns true if the device has confirmed them.
+    /// Makes the outputs safe, except those that may be on at rest. Returns true if the device has confirmed them.
     pub fn end(mut self) -> bool {
         self.orders.mode = Mode::End;
         for _ in 0..ENDING {

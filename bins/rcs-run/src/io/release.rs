@@ -50,7 +50,7 @@ pub fn release(arguments: &IoReleaseArguments) -> Result<ExitCode, Error> {
     Ok(if is_done { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
 }
 
-/// The outputs of a device that are on and may not be on at rest.
+/// The outputs of a device that are on although they must be off at rest.
 fn outputs_on(bench: &Bench, index: usize) -> Result<Vec<String>, String> {
     match bench.probe(index, Mode::Watch) {
         Ok(probe) => {

@@ -184,7 +184,7 @@ fn is_converter(input: &field::InPoint) -> bool {
     matches!(input.target, Target::Word(word) if matches!(word.kind(), point::Kind::Converter | point::Kind::Force))
 }
 
-/// An input with its verdict. Only converters begin as steady; their ends mean a broken wire.
+/// An input with its verdict. Only converters begin as steady; a value at an end of their range means a broken wire.
 fn judged(mut input: InputTally) -> InputTally {
     if input.verdict == Verdict::Steady {
         let is_broken = input.counts.is_some_and(|[least, most]| least == 0 || most == 4095);

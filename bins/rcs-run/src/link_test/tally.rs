@@ -12,7 +12,7 @@ const IN_TIME: Duration = Duration::from_millis(TICK_MS); // longest latency of 
 const GOOD: f64 = 0.95; // least share of frames acknowledged in time for `good`
 const USABLE: f64 = 0.90; // least share for `usable`
 /// Largest share of frames without an answer for `good`. 10 restarts in 10 s lose the link (docs/design/link.md
-/// "Recovery"); at this share, that happens in one run of 250 frames in a million.
+/// "Recovery"). At this share, one in a million runs of 250 frames loses it.
 const LOST_GOOD: f64 = 0.005;
 /// Largest share for `usable`: 10 of 250 frames are lost in one run of 5000.
 const LOST_USABLE: f64 = 0.01;

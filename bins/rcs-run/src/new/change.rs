@@ -85,7 +85,7 @@ impl Change {
         Ok(())
     }
 
-    /// Insert a table after the last table of kind `kind` that contains the entry `behind`; empty matches every table.
+    /// Insert a table after the last table of kind `kind` with the entry `behind`. Every table has the empty entry.
     pub fn add_table(&mut self, file: &str, kind: &str, behind: &str, table: &str) -> Result<(), Error> {
         let text = self.text(file)?;
         let mut lines: Vec<&str> = text.lines().collect();
@@ -141,7 +141,7 @@ impl Texts {
     }
 }
 
-/// Check whether the files of a data directory can be changed: not the data built into the program.
+/// Check whether the files of a data directory can be changed. The data built into the program cannot.
 pub fn changeable(data: &Path) -> Result<(), Error> {
     let why = "the data are those in the program: `rcs-run init .` writes a copy that can be changed";
     data.is_dir().then_some(()).ok_or_else(|| Error::New(why.to_owned()))

@@ -1,4 +1,4 @@
-//! The parts from which a new part is derived: blank, machined parts, and the virtual objects of hold and seat.
+//! The parts from which a new part is derived: the blank, the machined parts, and the virtual objects of hold and seat.
 
 use std::path::Path;
 
@@ -59,7 +59,7 @@ impl Family {
         Ok(Self { parts, stem, others, job: job.source().clone(), program, entered: Entered::of(store) })
     }
 
-    /// The part to which an object belongs (index), and true for the part itself instead of its hold or seat pose.
+    /// Index of the part to which an object belongs, and false if the object is a hold or seat pose of that part.
     pub fn part_of(&self, object: &Name16) -> Option<(usize, bool)> {
         let at = |name: &str| self.parts.iter().position(|part| part.name == name);
         let name = object.as_str();

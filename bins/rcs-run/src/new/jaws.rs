@@ -6,7 +6,7 @@
 
 use plant::description::{Vise, ViseProgram};
 
-/// Length by which a part must project from its step, so that fingers can push it to the back, in.
+/// Length by which a part must project from its step so that the fingers can push it to the back, in.
 const PUSHED: f64 = 0.05;
 /// Distance of the middle of a part behind the front edge of its ledge, before it is pushed, in.
 const STANDS: f64 = 0.03;
@@ -16,7 +16,7 @@ const CLOSED: f64 = 0.05; // least gap of the jaws when they close on a part, in
 pub const GRIPPED: f64 = 0.50; // least height of a part above the jaws for the fingers, in
 pub const LEDGE: f64 = 0.04; // least width of a part on each ledge, in
 const STRIP: f64 = 0.02; // least width of a ledge, in
-/// Geometry of a new step: depth beyond the deepest step, in; height of its ledge as a share; its greatest height, in.
+/// Geometry of a new step: depth beyond the deepest step, in; height of its ledge as a share; greatest height, in.
 const DEEPER: f64 = 0.10;
 const HIGHER: f64 = 0.6;
 const LOWEST: f64 = -0.30;
@@ -51,7 +51,7 @@ pub struct Chosen {
     pub behind: f64, // distance before the back where the part is released, in
 }
 
-/// The first step that fits: that of the like part, another step, or a new one. Errors: one line per step.
+/// The first step that fits: the like part's step, another one, or a new one. The error has one line per step.
 pub fn choose(vise: &Vise, like: &ViseProgram, name: &str, wanted: &Wanted) -> Result<Chosen, Vec<String>> {
     let others = vise.program.iter().filter(|other| other.name != like.name);
     let mut reasons: Vec<String> = Vec::new();
@@ -74,7 +74,7 @@ pub fn choose(vise: &Vise, like: &ViseProgram, name: &str, wanted: &Wanted) -> R
 }
 
 impl Wanted {
-    /// The range for the back of a step whose ledge begins at `front`. Errors: a message if no back fits.
+    /// The range for the back of a step whose ledge begins at `front`. Fails with a message if no back fits.
     fn backs(&self, front: f64) -> Result<[f64; 2], String> {
         let least = front + STANDS + NEAREST.min(self.behind) + self.height / 2.0;
         let most = self.pushed.map_or(self.height, |height| height - PUSHED);
@@ -161,7 +161,7 @@ impl Wanted {
     }
 }
 
-/// Start of a step's ledge, from the front, in the depth that lower and deeper steps leave, if any.
+/// Start of a step's ledge, measured from the front, where lower and deeper steps leave depth, if any.
 fn front(vise: &Vise, step: &ViseProgram) -> Option<f64> {
     let lower: Vec<_> = vise.program.iter().filter(|other| other.ledge < step.ledge).collect();
     let carries = step.depth - LEDGE;

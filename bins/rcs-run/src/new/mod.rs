@@ -35,7 +35,7 @@ use self::{
 };
 use crate::rcs_run::{arguments::CheckArguments, error::Error, pose, ways};
 
-/// Make new data. Fails with [`Error`] with the reason. No file was written.
+/// Make new data. After an [`Error`], which has the reason, no file was written.
 pub fn new(arguments: &NewArguments) -> Result<ExitCode, Error> {
     match &arguments.what {
         What::Part(arguments) => {

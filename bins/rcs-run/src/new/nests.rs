@@ -97,7 +97,7 @@ impl Numbers for Nested<'_> {
         &self.parts
     }
 
-    /// A grip that is valid at any place stays, and gets a second grip for the array of the nests.
+    /// A grip that is valid at any place stays unchanged; a second grip is added for the array of the nests.
     fn grips(&self, grip: &GripEntry) -> Result<Vec<(Typed, Vec<MovetableLine>)>, Error> {
         let object = grip.object.name;
         let table = self.family.movetable(grip.movetable.name.as_str());

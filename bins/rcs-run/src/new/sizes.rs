@@ -1,6 +1,6 @@
-//! Computes the numbers of a family whose parts have other sizes. A grip moves with the face to which it refers: in a
-//! tray with the floor, in the vise with back, ledge and fixed face, for a push with the front face, at the pedestal
-//! with the middle of the part. This keeps the clearances of the like part.
+//! Computes the numbers of a family whose parts have other sizes. A grip moves with the face to which it refers: the
+//! floor of a tray, the back, ledge and fixed face of the vise, the front face for a push, the middle of the part at
+//! the pedestal. This keeps the clearances of the like part.
 
 use plant::{
     CellDescription,
@@ -26,7 +26,7 @@ use super::{
 };
 use crate::rcs_run::error::Error;
 
-/// Largest share of a low part's height that fingers cover; the rest keeps them off the floor.
+/// Largest share of a low part's height that the fingers cover. The remaining height keeps them off the floor.
 const REACH: f64 = 2.0 / 3.0;
 const CLEAR: f64 = 0.25; // clearance of the fingers above jaws and hands, in
 pub const ROOM: f64 = 0.5; // least clearance of an open gripper around a part, both sides together, in
@@ -153,7 +153,7 @@ impl<'a> Sizes<'a> {
         Ok(())
     }
 
-    /// The force that weight and lever of the parts require, lb.
+    /// The grasp force that weight and lever arm of the parts require, lb.
     fn needed_force(&self) -> f64 {
         let gripper = &self.cell.gripper.parts;
         let [length, _, wide] = gripper.fingers;
@@ -292,7 +292,7 @@ struct Like {
 }
 
 impl Rules<'_> {
-    /// These numbers, and the height of the fingertips above the floor, in.
+    /// Reads the like part's numbers, and the height of the fingertips above the floor, in.
     fn read(&self) -> Result<(Like, f64), String> {
         let last = self.family.parts.len().saturating_sub(1);
         let tips = -self.offset(Place::Tray, |part| part == 0).ok_or("no grip takes it from a tray")?[0];

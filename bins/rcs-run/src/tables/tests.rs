@@ -31,7 +31,7 @@ pub struct Situation {
 
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Request {
-    /// The lamp when the command came.
+    /// The lamp when the command arrived.
     pub lamp: Lamp,
 }
 

@@ -112,7 +112,7 @@ impl<'n, 'a> Reader<'n, 'a> {
         if self.path.is_empty() { self.notes.kind.whole } else { &self.path }
     }
 
-    /// 1 if the entry is not such a number.
+    /// The whole number, or 1 if the entry is not one in range.
     fn whole<T: TryFrom<i64> + Default>(&self, low: impl Display, high: impl Display) -> T {
         let number = match self.value() {
             Some(DeValue::Integer(number)) => i64::from_str_radix(number.as_str(), number.radix()).ok(),
@@ -158,7 +158,7 @@ impl<'n, 'a> Reader<'n, 'a> {
         Elements { reader: self, array, next: 0, length }
     }
 
-    /// Keys that the structure does not have.
+    /// Reports keys that the structure does not have.
     fn unknown(&self, table: &DeTable<'_>, fields: &[&str]) {
         for (key, _) in table.iter().filter(|(key, _)| !fields.contains(&key.get_ref().as_ref())) {
             let name = key.get_ref();
@@ -308,7 +308,7 @@ impl<'de> de::Deserializer<'de> for Reader<'_, 'de> {
         })
     }
 
-    /// Keys are names: every key is an entry.
+    /// The keys of a map are names, so every key is accepted.
     fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
         let entries: Vec<_> = match self.table() {
             Some(table) => {

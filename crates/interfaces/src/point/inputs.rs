@@ -34,9 +34,9 @@ pub enum Kind {
     Number,
     /// Power of several sensors.
     Supply,
-    /// Cable of several sensors: a name for faults, not a point of its own.
+    /// Cable of several sensors. It is a name for faults, not a separate point.
     Cable,
-    /// The vision system: it answers in messages, so it can only be switched off.
+    /// The vision system, which answers in messages. A fault can only switch it off.
     Camera,
 }
 

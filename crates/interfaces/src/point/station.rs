@@ -48,7 +48,7 @@ static WRITTEN: [Row; 9] = [
     ("drum.tool", "", Group::Drum, NUMBER),
 ];
 
-/// A presence sensor of a tray, `tray.UNIT.SECTOR`; sector 0 of a unit without sectors.
+/// A presence sensor of a tray, `tray.UNIT.SECTOR`. The sector is 0 for a unit without sectors.
 static TRAY: Row = ("tray.", "", Group::Trays, 1);
 
 impl<'n> Station<'n> {
@@ -75,8 +75,8 @@ impl<'n> Station<'n> {
         fits.then_some(Self { row, place })
     }
 
-    /// The words that a device of a group must have, as beginning and end of their names. Presence sensors of trays,
-    /// air and safety circuit are optional one by one.
+    /// The words that a device of a group must have, as beginning and end of their names. Each presence sensor of a
+    /// tray, the air and the safety circuit are optional.
     pub fn needed(group: Group, written: bool) -> impl Iterator<Item = (&'static str, &'static str)> {
         let rows: &[Row] = if written { &WRITTEN } else { &READ };
         let of_group = move |row: &&Row| row.2 == group && !matches!(group, Group::Supply | Group::Trays);

@@ -1,4 +1,4 @@
-//! The items in memory: a value that can be cloned, with the same answers as a database in a file.
+//! The items in memory: a value that can be cloned. It gives the same answers as a database in a file.
 
 use std::{collections::BTreeMap, convert::Infallible};
 

@@ -17,9 +17,9 @@
 //! ```
 //!
 //! The manual gives the values of the 28-byte command, and says that DSClen, TRNSlen and TYPEindc change for a DML
-//! command. The lengths follow by counting. CHOSEN: TYPEindc 0x55 (its initial value) is ABORT, 0x56 INITIATE, 0x57
-//! STARTUP, 0x58 DML; trans-id# is the number of an update, which is executed once however often it is sent, and 0
-//! means no number. Numbers are low byte first, lengths of the protocol high byte first.
+//! command. The lengths are counted. CHOSEN: TYPEindc 0x55 (its initial value) is ABORT, 0x56 INITIATE, 0x57 STARTUP,
+//! 0x58 DML; trans-id# is the number of an update, or 0 for none. A repeated update with the same number is not
+//! executed again. Numbers are low byte first, lengths of the protocol high byte first.
 
 use std::ops::Range;
 
@@ -142,7 +142,7 @@ pub enum EncodeError {
     Sector(i32), // more than one character
 }
 
-/// Returns the bytes and their number, without allocation. Errors: a field cannot hold its value.
+/// Returns the bytes and their number, without allocation. Fails if a field cannot hold its value.
 pub fn encode(command: &DataBaseCommand) -> Result<([u8; DML], usize), EncodeError> {
     let transaction = Transaction::of(command.command).ok_or(EncodeError::Nothing)?;
     let length = transaction.length();
@@ -250,14 +250,14 @@ pub enum DecodeError {
     Text(usize), // not printable ASCII
 }
 
-/// Errors: the place of the first wrong byte.
+/// The error has the place of the first wrong byte.
 pub fn decode(bytes: &[u8]) -> Result<Received<'_>, DecodeError> {
     let size = bytes.len();
     if size != RECONFIGURATION && size != DML {
         return Err(DecodeError::Size(size));
     }
     for (at, expected) in FIXED {
-        // Any printable text can be the client, and only a DML command has the last field.
+        // The client can be any printable text, and only a DML command has the last field.
         if at != 8 && at < size {
             expect(bytes, at, expected)?;
         }

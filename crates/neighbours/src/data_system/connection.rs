@@ -75,7 +75,7 @@ impl DataSystem {
         Self::new(InMemory::default(), answer_ticks)
     }
 
-    /// Everything that later answers depend on: items, clients, the command in progress, ticks until its answer.
+    /// All state on which later answers depend: items, clients, the command in progress, ticks until its answer.
     pub fn state(&self, tick: Tick) -> impl Debug {
         (&self.keeper, self.status.report, self.due.map(|due| due.since(tick)))
     }
@@ -190,7 +190,7 @@ impl<K: Keeper> DataSystem<K> {
         self.refusals.push(why);
     }
 
-    /// Sorted by name and number. Empty if the server is in another process, which alone can list them.
+    /// Items by name and number. Empty if the server is in another process, which does not send them.
     pub fn items(&mut self) -> Result<Vec<Item>, String> {
         self.keeper.items()
     }

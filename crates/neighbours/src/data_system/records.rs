@@ -28,7 +28,7 @@ pub trait Records {
     fn set_session(&mut self, client: &str, session: u8) -> Result<(), Self::Error>;
 
     /// Stores a position reported by a client; true if it is new. A statement with a number other than 0 is executed
-    /// once, even after reports of other clients. After an error the records are unchanged.
+    /// only once, even if other clients have reported meanwhile. After an error the records are unchanged.
     fn report(&mut self, client: &str, said: Said<'_>, item: &Item) -> Result<bool, Self::Error>;
 
     fn items(&self) -> Result<Vec<Item>, Self::Error>; // sorted by name and number

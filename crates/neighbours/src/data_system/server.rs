@@ -1,5 +1,5 @@
 //! The server: from the bytes of a command to those of a status. It accepts an item only from a client that has
-//! connected by the steps of IV.4.2 (Abort, Initiate, Startup). A repeated step, whose answer was lost, succeeds. The
+//! connected by the steps of IV.4.2 (Abort, Initiate, Startup). A client can repeat a step whose answer was lost. The
 //! database stores the state of a client, so that a restarted server continues.
 //!
 //! ```text
@@ -97,7 +97,7 @@ impl<R: Records> Server<R> {
     }
 }
 
-/// The error names the empty or wrong value.
+/// The error names the first empty or wrong value.
 fn item(update: &Update<'_>) -> Result<Item, String> {
     let value = |column: Column| {
         let value = update.value(column).unwrap_or_default();

@@ -94,7 +94,7 @@ impl Status {
         [0xA1, 0x82, 0, 0x0A, 0xB0, 2, low, high, 0x51, 1, self.server as u8, 0x52, 1, summary]
     }
 
-    /// Parse-das-status. Errors: the first wrong byte.
+    /// Parse-das-status. The error names the first wrong byte.
     pub fn decode(bytes: &[u8]) -> Result<Self, StatusError> {
         let bytes: &[u8; STATUS] = bytes.try_into().map_err(|_| StatusError::Size(bytes.len()))?;
         let blank = Self::default().encode();

@@ -183,7 +183,7 @@ fn characters(at: At, from: &[u8], legal: impl Fn(u8) -> bool) -> Result<&str, F
 
 fn put_text(text: &dyn fmt::Display, to: &mut [u8]) {
     to.fill(BLANK);
-    // An error only means that the text was truncated as intended.
+    // An error only means that the text was truncated, as intended.
     let _ = write!(Clipped { rest: to }, "{text}");
 }
 

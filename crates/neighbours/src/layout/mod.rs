@@ -131,7 +131,7 @@ macro_rules! layout {
                 bytes
             }
 
-            /// Errors: the first value that does not fit its field.
+            /// The error names the first value that does not fit its field.
             pub fn check(record: &$type) -> Result<(), $crate::fields::RangeError> {
                 $(
                     let value = &$crate::layout!(@get record, $type, $place);
@@ -142,7 +142,7 @@ macro_rules! layout {
                 Ok(())
             }
 
-            /// Errors: a wrong size, or the first invalid field.
+            /// Fails if the size is wrong, or a field is invalid.
             pub fn decode(bytes: &[u8]) -> Result<$type, $crate::layout::LayoutError> {
                 let mut record = <$type>::default();
                 $crate::layout::sized($what, Self::BYTES, bytes)?;

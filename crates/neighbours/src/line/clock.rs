@@ -9,7 +9,7 @@ pub enum ClockKind {
     Fast = 1, // as fast as possible; each tick waits for all neighbours
 }
 
-/// Limit of an answer to a pulse: 10 s on the 40 ms grid; 60 s in fast clock, as the computer may be busy.
+/// Time limit for an answer to a pulse: 10 s on the 40 ms grid, 60 s in fast clock, because the computer may be busy.
 #[must_use]
 pub const fn answer_limit(clock: ClockKind) -> Duration {
     match clock {

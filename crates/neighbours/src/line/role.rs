@@ -51,7 +51,7 @@ impl Role {
             Self::Workstation => &[HWSC_STATUS, CELL_STATUS],
             Self::DataSystem => &[DATA_SYSTEM_COMMAND],
             Self::Pedestal => &[PEDESTAL_COMMAND, PEDESTAL_SENSORS],
-            // The picture first: a neighbour that reads the request already has it.
+            // The picture is first, so that it has arrived before the neighbour reads the request.
             Self::Vision => &[VISION_PICTURE, VISION_REQUEST],
             Self::Operator => &[],
         }

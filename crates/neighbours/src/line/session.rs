@@ -17,8 +17,8 @@
 //! ```
 //!
 //! The caller passes received bytes to [`Session::receive`], calls [`Session::event`] until it returns `None`, then
-//! sends [`Session::output`]. [`Session::deadline`] is the time of the next [`Session::check_time`]. Socket (user) or
-//! TLS (certificate) authenticate the peer.
+//! sends [`Session::output`]. [`Session::deadline`] is the time of the next [`Session::check_time`]. The socket (user)
+//! or TLS (certificate) authenticates the peer.
 
 use std::{
     fmt,
@@ -37,7 +37,7 @@ pub const HELLO: usize = 8; // bytes
 const MARK: [u8; 4] = *b"RCS2"; // begins both hellos
 pub const VERSION: u16 = 3;
 
-/// A neighbour's time limit for hello and welcome; on the 40 ms grid also for the next byte.
+/// A neighbour's time limit for hello and welcome. On the 40 ms grid it also applies to the next byte.
 pub const NEIGHBOUR_LIMIT: Duration = Duration::from_secs(10);
 
 #[derive(Debug, PartialEq, Eq)]
@@ -238,7 +238,7 @@ impl Session {
         }
     }
 
-    /// The other side writes the `expected` mailboxes.
+    /// Handles a frame. The other side may write only the `expected` mailboxes.
     fn frame(&mut self, expected: &'static [Place], now: Instant) -> Result<Option<Step>, SessionError> {
         let Some(frame) = Frame::first(&self.input[self.read..])? else { return Ok(None) };
         let (start, end) = (self.read + frame::ADDRESS, self.read + frame.bytes().len());
@@ -362,7 +362,7 @@ impl Session {
     }
 }
 
-/// A text without control characters, which a terminal would execute.
+/// The text without control characters, because a terminal would execute them.
 fn plain(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).replace(char::is_control, "?")
 }

@@ -16,7 +16,7 @@ crate::layout! {
     "table-angle"  (table_angle)  I32,            "0.1 degree; absolute for PRE-GRIP, relative for FLIP";
 }
 
-/// The number of a command, also to refuse one that cannot be decoded; `None` if the data end too early.
+/// The number of a command, needed also to refuse an undecodable command. `None` if the data end too early.
 #[must_use]
 pub fn number(data: &[u8]) -> Option<u32> {
     let field = data.get(U64::BYTES..U64::BYTES + U32::BYTES)?;

@@ -12,8 +12,8 @@
 //! tick ([`interfaces::OutsidePedestal`]): boards, logs and replays do not depend on the network.
 //!
 //! Two more mailboxes carry the words of the pedestal's devices in the simulated cell ([`cell`]). All integers have
-//! four bytes, `cycle-cnt` eight, as in the controller (CHOSEN): a run is the same in whichever process its pedestal
-//! runs.
+//! four bytes, `cycle-cnt` eight, as in the controller (CHOSEN). So a run does not depend on the process in which its
+//! pedestal runs.
 
 pub mod cell;
 pub mod command;

@@ -38,7 +38,7 @@ use crate::{
     mailbox::{Mailbox, PEDESTAL_GRIPPER_STATUS, PEDESTAL_ORDERS, PEDESTAL_STATUS, PEDESTAL_TABLE_STATUS},
 };
 
-/// The number for hand and table of a replacement pedestal, which have not executed that command.
+/// Command number for hand and table of a replacement pedestal. They have not executed the present command.
 const OF_THE_LAST_ONE: u32 = 1;
 
 pub struct System {
@@ -133,7 +133,7 @@ impl System {
         }
     }
 
-    /// Adopts the number in the mailbox as that of a finished command.
+    /// Adopts the number in the mailbox as the number of a finished command.
     fn adopt(&mut self, number: u32) {
         self.joining = false;
         let mut state = *Process::<()>::state(&self.pedestal);

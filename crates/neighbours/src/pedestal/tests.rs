@@ -227,7 +227,7 @@ proptest! {
         let _ = OrdersLayout::decode(&bytes);
     }
 
-    /// Changes one byte of a valid command. If the result decodes, encoding it gives the same bytes.
+    /// Changes one byte of a valid command. If the result can be decoded, encoding it gives the same bytes.
     #[test]
     fn accepted_command_encodes_to_the_same_bytes(at in any::<prop::sample::Index>(), byte in any::<u8>()) {
         let mut bytes = CommandLayout::encode(&flip(7));
@@ -240,7 +240,7 @@ proptest! {
         }
     }
 
-    /// With arbitrary data and processes that join at any time, the pedestal continues and its output can be decoded.
+    /// The pedestal continues, and its output can be decoded, with arbitrary data and processes that join at any time.
     #[test]
     fn arbitrary_mailgrams_do_not_stop_the_pedestal(
         events in prop::collection::vec((0_u8..6, prop::collection::vec(any::<u8>(), 0..40)), 1..60),

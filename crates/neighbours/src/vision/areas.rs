@@ -102,12 +102,12 @@ impl Areas {
         },
     };
 
-    /// Errors: two bytes cannot hold a value.
+    /// Fails if two bytes cannot hold a value.
     pub fn encode(&self) -> Result<[u8; AreasLayout::BYTES], RangeError> {
         AreasLayout::check(self).map(|()| AreasLayout::encode(self))
     }
 
-    /// Errors: the first unreadable field. E-move checks the values.
+    /// The error names the first unreadable field. E-move checks the values.
     pub fn decode(bytes: &[u8]) -> Result<Self, VisionError> {
         Ok(AreasLayout::decode(bytes)?)
     }

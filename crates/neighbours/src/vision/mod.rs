@@ -11,11 +11,11 @@
 //! ```
 //!
 //! Vision writes both ready words: `vision-ready-input` is 2 while the response area may be read,
-//! `vision-ready-output` while a request may be written. The controller only initializes them (blocks 984-986): input
-//! "ready", because the response is empty, output "not ready", because no vision system is connected. Vision
-//! establishes communications when it first writes its mailbox. The crate `sessions` has the controller's end,
-//! E-move's READ-VISION-DATA and WRITE-VISION-REQUEST (IV.4.4): `vision::Port`. E-move reads the response as a logged
-//! device input.
+//! `vision-ready-output` while a request may be written. The controller only initializes them (blocks 984-986). Input
+//! is "ready", because the response is empty. Output is "not ready", because no vision system is connected. Vision
+//! establishes communications when it first writes its mailbox. The crate `sessions` has the controller's end, E-move's
+//! READ-VISION-DATA and WRITE-VISION-REQUEST (IV.4.4): `vision::Port`. E-move reads the response as a logged device
+//! input.
 
 pub mod areas;
 pub mod picture;

@@ -1,4 +1,4 @@
-//! The command of the workstation controller (V.4.2). Padding: blanks, or also zeros when read (CHOSEN).
+//! The command of the workstation controller (V.4.2). Blanks pad texts; readers also accept zeros (CHOSEN).
 
 use interfaces::HwsCommand;
 
@@ -59,12 +59,12 @@ pub enum CommandError {
     NoCommand,
 }
 
-/// Errors: two bytes cannot hold a grip or a sector.
+/// Fails if two bytes cannot hold a grip or a sector.
 pub fn encode(command: &HwsCommand) -> Result<[u8; CommandLayout::BYTES], RangeError> {
     CommandLayout::check(command).map(|()| CommandLayout::encode(command))
 }
 
-/// Errors: the first wrong field. Task checks the words.
+/// The error names the first wrong field. Task checks the words.
 pub fn decode(bytes: &[u8]) -> Result<HwsCommand, CommandError> {
     let command = CommandLayout::decode(bytes)?;
     if command.number == 0 {

@@ -86,7 +86,7 @@ impl Judge for Unchecked {
     }
 }
 
-/// It allocates only for a command that fails its check.
+/// The gate allocates only for a command that fails its check.
 #[derive(Clone, Debug)]
 pub struct Gate {
     read: u16, // last mailgram number
@@ -113,7 +113,7 @@ impl Default for Gate {
 }
 
 impl Gate {
-    /// The controller starts with its last command, which is not executed. The next may have any other number.
+    /// A controller that starts with its last command does not execute it. The next may have any other number.
     #[must_use]
     pub fn resumed(command: &HwsCommand) -> Self {
         Self { command: *command, ..Self::default() }
@@ -150,7 +150,7 @@ impl Gate {
         self.status_box.initialize();
     }
 
-    /// The command was sent while the mailbox was not read, and must not be executed.
+    /// Skips a command that was sent while the mailbox was not read, and must not be executed.
     pub fn pass_over(&mut self, command_box: &Mailbox) {
         self.read = command_box.mailgram();
     }

@@ -46,7 +46,7 @@ use super::status::{Status, TaskState};
 use crate::fields::command_number;
 
 pub trait Workstation {
-    /// `line` is its line in the job, without the asterisks. Errors: why the workstation cannot execute it.
+    /// `line` is its line in the job, without the asterisks. The error states why it is impossible.
     fn begin(&mut self, action: &Action, line: &str) -> Result<(), String>;
 
     fn busy(&self) -> bool; // while an action is in progress
@@ -59,16 +59,16 @@ pub trait Workstation {
     /// The fault of the workstation as a sentence, if any.
     fn fault(&self) -> Option<String>;
 
-    /// It has stopped the robot. As a sentence.
+    /// The emergency that has stopped the robot, as a sentence, if any.
     fn emergency(&self) -> Option<String> {
         None
     }
 }
 
-/// Per step, ticks: five minutes, three times the longest step of the linkbar job.
+/// Time limit of a step, ticks: five minutes, three times the longest step of the linkbar job.
 pub const TIME_LIMIT: u64 = 5 * 60 * 1000 / TICK_MS;
 
-/// Ticks from the PAUSE after an error to the repeated command: the cause may end meanwhile. CHOSEN: 1 s.
+/// Ticks from the PAUSE after an error to the repeated command, in which the cause may end. CHOSEN: 1 s.
 pub const RETRY_TICKS: u64 = 1000 / TICK_MS;
 
 #[derive(Clone, Debug)]
@@ -128,7 +128,7 @@ impl Hwsc {
         }
     }
 
-    /// Repeats failed commands after a PAUSE, per line at most `retries` times; see [`Reason::remedy`].
+    /// Repeats a failed command after a PAUSE, at most `retries` times per line; see [`Reason::remedy`].
     #[must_use]
     pub const fn with_retries(mut self, retries: u32) -> Self {
         self.retries = retries;
@@ -140,7 +140,7 @@ impl Hwsc {
         &self.retried
     }
 
-    /// Ticks until an unanswered command is repeated. The default is for the same process; a network is slower.
+    /// Sets the ticks until an unanswered command is repeated. The default is for one process; a network is slower.
     #[must_use]
     pub const fn with_answer_ticks(mut self, ticks: u64) -> Self {
         self.answer_ticks = ticks;
@@ -151,7 +151,7 @@ impl Hwsc {
         self.steps.insert(self.current.min(self.steps.len()), line);
     }
 
-    /// False, without a change, if no command is left.
+    /// Returns false and changes nothing if no command is left.
     #[must_use]
     pub fn replace_command(&mut self, line: JobLine) -> bool {
         let coming = self.steps.iter_mut().skip(self.current);
@@ -169,7 +169,7 @@ impl Hwsc {
         std::mem::take(&mut self.to_send).then_some(&self.command)
     }
 
-    /// The last begun line, 0 before the first, and the number of lines, without operators' commands.
+    /// The last begun line (0 before the first), and the number of lines. Operators' commands are not counted.
     #[must_use]
     pub fn place(&self) -> (usize, usize) {
         let lines = self.steps.len();
@@ -396,7 +396,7 @@ impl Hwsc {
         is_begun && self.step_at(self.current).is_some_and(hands_over)
     }
 
-    /// When the workstation controller disconnects: PAUSE, then the next line. `last`: number of its last command.
+    /// After the workstation controller has disconnected: PAUSE, then the next line. `last` is its last command number.
     pub fn take_back(&mut self, tick: Tick, last: u32, commands: Vec<BegunStep>) {
         self.took(tick);
         self.finish(Outcome::Finished);

@@ -1,4 +1,4 @@
-// Where the links are: `/tf` as a table of poses for each frame.
+// The poses of the links: `/tf` as a table of poses for each frame.
 //
 // `/tf` has a quarter of a million transforms in a run of 20 minutes, so they are read here without objects.
 
@@ -10,11 +10,11 @@ import { multiply, IDENTITY, ofPose } from './matrix.js';
 export const WORLD = 'world';
 /** Numbers of a pose: x, y, z in metres, and the quaternion w, x, y, z. */
 const SIZE = 7;
-/** Places in a pose of the fields of a vector and of a quaternion. */
+/** Positions in a pose of the fields of a vector and of a quaternion. */
 const POSITION = [0, 1, 2];
 const ROTATION = [4, 5, 6, 3];
 
-/** The poses of a frame in its parent over time. */
+/** The poses of a frame in its parent by tick. */
 class Track {
   /** @param {string} parent */
   constructor(parent) {
@@ -25,7 +25,7 @@ class Track {
     this.poses = [];
   }
 
-  /** The pose in a tick; the first one before it. @param {number} tick */
+  /** The pose in a tick; before the first pose, the first one. @param {number} tick */
   at(tick) {
     let [low, high] = [0, this.ticks.length];
     while (low < high) {
@@ -102,7 +102,7 @@ export class Frames {
   }
 }
 
-/** Names of frames: each is made of its bytes once. */
+/** Names of frames: each is decoded from its bytes only once. */
 class Names {
   constructor() {
     /** @type {Map<number, string>} */

@@ -25,7 +25,7 @@ export function readGlb(file) {
     const { bufferView, componentType, count, type } = json.accessors[accessor];
     const { byteOffset = 0 } = json.bufferViews[bufferView];
     const size = type === 'VEC3' ? count * 3 : count;
-    // The file lies anywhere in the log, and arrays of numbers must begin at a multiple of their size.
+    // The file can be at any offset in the log, but a typed array must begin at a multiple of its element size.
     const start = file.byteOffset + binary + byteOffset;
     const bytes = file.buffer.slice(
       start,
@@ -82,9 +82,9 @@ function joined(parts) {
   return mesh;
 }
 
-/** Cosine of the angle from which on two faces meet at an edge that is drawn. */
+/** Two faces meet at a drawn edge if the cosine of their angle is smaller than this. */
 const CREASE = 0.85;
-/** Positions are equal if they agree to this part of a metre. */
+/** Positions are equal if they agree when rounded to this fraction of a metre. */
 const GRID = 1e5;
 
 /**

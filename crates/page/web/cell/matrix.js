@@ -90,7 +90,7 @@ export function ofPose(pose) {
 
 export const IDENTITY = ofPose([0, 0, 0, 1, 0, 0, 0]);
 
-/** A point by a matrix, with its fourth coordinate. @param {Float32Array} m @param {ArrayLike<number>} p */
+/** A point transformed by a matrix, with its fourth coordinate. @param {Float32Array} m @param {ArrayLike<number>} p */
 export function transform(m, p) {
   return [0, 1, 2, 3].map((row) => m[row] * p[0] + m[4 + row] * p[1] + m[8 + row] * p[2] + m[12 + row]);
 }

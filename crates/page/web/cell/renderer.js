@@ -23,7 +23,7 @@ import { BACKDROP, EDGES, MARKS, SHADOW, SURFACE, TEXELS } from './shaders.js';
 
 const FIELD_OF_VIEW = 0.52;
 const SHADOW_SIZE = 2048;
-/** The sun: a point on its way to the middle of the cell, and that middle, metres. */
+/** The sunlight: a point on its path to the middle of the cell, and that middle, metres. */
 const MIDDLE = /** @type {Point} */ ([0.35, -0.6, -0.5]);
 const SUN = /** @type {Point} */ ([-0.279, -0.537, 0.796]);
 const SUN_DISTANCE = 9;
@@ -89,7 +89,7 @@ export class Renderer {
     this.sphere = sphere();
     this.view = new Float32Array(16);
     this.size = [1, 1];
-    /** Is passed when the graphics processor has drawn the last picture. @type {WebGLSync | null} */
+    /** Signalled when the graphics processor has drawn the last picture. @type {WebGLSync | null} */
     this.fence = null;
   }
 

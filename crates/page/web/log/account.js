@@ -1,4 +1,4 @@
-// What went wrong in a run: the first failure, and those that followed.
+// The failures of a run: the first one, and those that followed.
 //
 // `why.json` has it as `rcs-log why --json` prints it: `world` is the first failure, with the others in
 // `followed`. `failure` explains the first one that a process reports.

@@ -8,15 +8,15 @@ import { textOf } from './bytes.js';
 const SUBPROTOCOL = 'foxglove.sdk.v1';
 /** Codes of binary messages. */
 const CODE = { message: 1, time: 2, response: 3, request: 2 };
-/** Topics that the page does not read: bytes for programs, and what it computes from other topics. */
+/** Topics that the page does not read: bytes for programs, and data that it computes from other topics. */
 const LEFT_OUT = ['/replay', '/trail', '/t3i/link_tx', '/robot_description'];
-/** Silence after which the connection counts as lost, milliseconds. */
+/** Silence after which the connection is treated as lost, milliseconds. */
 const SILENCE = 700;
-/** Time between two looks at the connection, milliseconds. With the silence this stays well below a second. */
+/** Interval of checking the connection, milliseconds. Added to the silence it is well below a second. */
 export const LOOK = 50;
 /** Pauses before the attempts to connect again, milliseconds; the last one repeats. */
 const PAUSES = [250, 500, 1000, 2000];
-/** Time limit of an answer, milliseconds: that of the run, and the way. */
+/** Time limit of an answer, milliseconds: that of the run, and the transmission. */
 const PATIENCE = 3000;
 /** The service for any line of an operator. */
 const REQUEST = '/operator/request';
@@ -53,7 +53,7 @@ export class Connection {
     this.heard = null;
     /** Time of the last message, or of the last attempt. */
     this.received = performance.now();
-    /** The time of the last tick when a look found it too old. @type {number | null} */
+    /** The time of the last tick when a check found it too old. @type {number | null} */
     this.suspect = null;
     this.attempts = 0;
     /** Time of the next attempt. */
@@ -96,7 +96,7 @@ export class Connection {
     const now = performance.now();
     const { heard } = this;
     const isOld = heard !== null && now - heard > SILENCE;
-    // A page that was held up first reads what has arrived meanwhile: the second look decides.
+    // A delayed page first reads the messages that have arrived meanwhile, so only the second check decides.
     if (this.state === 'ok' && isOld && this.suspect === heard) this.become('lost');
     this.suspect = isOld ? heard : null;
     // An attempt that gets no answer is given up.
@@ -134,7 +134,7 @@ export class Connection {
     const view = new DataView(data);
     const code = view.getUint8(0);
     if (code === CODE.time) {
-      // Only a run sends the time: the connection counts as alive from the first tick on.
+      // Only a run sends the time, so the connection is treated as alive from the first tick on.
       [this.heard, this.attempts] = [this.received, 0];
       this.become('ok');
       this.receiver.time(view.getBigUint64(1, true));
@@ -148,7 +148,7 @@ export class Connection {
     }
   }
 
-  /** Seconds of the past that the page has not seen. */
+  /** Seconds of the past whose messages the page has not received. */
   missed() {
     if (this.heard === null) return KEPT;
     return Math.min(KEPT, Math.ceil((performance.now() - this.heard) / 1000) + 1);
@@ -171,14 +171,14 @@ export class Connection {
     } else if (message.op === 'parameterValues' && message.id === NAME) {
       const values = new Map(message.parameters.map((/** @type {any} */ it) => [it.name, it.value]));
       this.name = String(values.get(NAME) ?? '');
-      // A gateway has checked the person: no token is needed.
+      // A gateway has checked the person, so no token is needed.
       if (values.get(ACCESS) === 'granted') this.right = 'accepted';
       this.receiver.changed();
     } else if (message.op === 'parameterValues' && message.id === TOKEN) {
       this.right = 'accepted';
       this.receiver.changed();
     } else if (message.op === 'status' && message.level === ERROR && this.right === 'asked') {
-      // The only message that can be wrong is the token.
+      // Of all messages, the run can refuse only the token.
       this.right = 'none';
       this.receiver.changed();
     }

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Connection, LOOK } from './connection.js';
 
-/** A socket that the test answers for. */
+/** A socket whose answers the test gives. */
 class Socket {
   static OPEN = 1;
   static last;
@@ -19,7 +19,7 @@ class Socket {
   }
 }
 
-/** A connection whose time stands still but for `pass`. */
+/** A connection whose time advances only by `pass`. */
 function connected(t) {
   const clock = { now: 10_000 };
   t.mock.method(performance, 'now', () => clock.now);

@@ -8,7 +8,7 @@ import { reportedChain } from './reports.js';
 /**
  * @typedef {object} Link
  * @property {number} tick
- * @property {'command' | 'cause' | 'report' | 'cell' | 'then'} kind `then`: a failure that followed
+ * @property {'command' | 'cause' | 'report' | 'cell' | 'then'} kind `then`: a later failure
  * @property {string | null} process id; null for the cell
  * @property {string} from name of the process, or of the kind of failure
  * @property {string} to name of the commanded process; empty for reports
@@ -18,7 +18,7 @@ import { reportedChain } from './reports.js';
  */
 
 /**
- * What to do next after the failure of a process; null for an event in the cell, of which the program has no
+ * What to do next after the failure of a process; null for an event in the cell, for which the program has no
  * remedy.
  * @param {import('./run.js').Run} run
  */

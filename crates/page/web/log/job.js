@@ -57,7 +57,7 @@ export class JobProgress {
     this.text = '';
   }
 
-  /** Take in what is new. Returns the lines; null if the log has none. */
+  /** Process the new messages. Returns the lines; null if the log has none. */
   update() {
     for (const [, { lines }] of this.jobs.fresh()) {
       const text = lines.map((/** @type {any} */ line) => line.text).join('\n');
@@ -84,7 +84,7 @@ export class JobProgress {
     const failed = state.phase === 'failed' || state.outcome === 'error';
     const over = failed || state.phase === 'over';
     if (over && line.end === Infinity) [line.end, line.status] = [tick, failed ? 'error' : 'finished'];
-    // A line that is sent again is executed again.
+    // A repeated line is executing again.
     if (state.phase === 'plays' && state.outcome === 'executing' && line.status === 'error')
       [line.end, line.status] = [Infinity, ''];
   }

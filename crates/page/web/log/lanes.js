@@ -30,7 +30,7 @@ const DONE = /^(done|finished|fingers-closed|qc-(un)?locked)/;
 /** Processes with lanes. */
 const COMMANDED = ['task', 'subtask', 'emove', 'prim', 'quick_change', 'grip', 'v_grip', 'tool_grip'];
 
-/** The lanes of a run, which grow with it. */
+/** The lanes of a run, extended while it is in progress. */
 export class Lanes {
   /** @param {import('./log.js').Log} log */
   constructor(log) {
@@ -38,7 +38,7 @@ export class Lanes {
   }
 
   /**
-   * Take in what is new, up to the last tick.
+   * Process new commands and messages, up to the last tick.
    * @param {Map<string, import('./messages.js').Command[]>} orders new commands
    * @param {number} last
    */
@@ -129,7 +129,7 @@ class Track {
     [bar.done, bar.failed, this.answered] = [tick, failed, true];
   }
 
-  /** The last command holds up to a tick. @param {number} tick */
+  /** Extend the last command up to a tick. @param {number} tick */
   extend(tick) {
     const bar = this.bars.at(-1);
     if (!bar) return;
@@ -139,7 +139,7 @@ class Track {
 }
 
 /**
- * Each picture that vision worked on.
+ * A bar for each picture that vision analysed.
  * @param {{ tick: number, status: string }[]} vision
  * @param {number} last
  * @returns {Bar[]}

@@ -1,9 +1,9 @@
-// The log of a run in progress: it grows with the messages of the live view, and forgets its oldest part.
+// The log of a run in progress: messages of the live view are added, and the oldest are removed.
 
 import { decoderOf, Log } from './log.js';
 import { Series } from './series.js';
 
-/** Bytes of messages that are kept, and the share that is removed when there are more. */
+/** Limit of the stored messages in bytes, and the share that is removed above it. */
 const LIMIT = { bytes: 96 << 20, share: 0.25 };
 
 /** @typedef {{ topic: string, tick: number, data: Uint8Array }} Arrival */
@@ -13,11 +13,11 @@ export class LiveLog extends Log {
   constructor(name, file) {
     super(name, file);
     this.last = 0;
-    /** Messages of ticks that may not be complete. @type {Arrival[]} */
+    /** Messages of ticks that may still be incomplete. @type {Arrival[]} */
     this.waiting = [];
     /** Size of the messages that are kept. */
     this.bytes = 0;
-    /** First tick of which everything is known; 0 before the first message. @type {number} */
+    /** First tick with all its messages; 0 before the first message. @type {number} */
     this.first = 0;
   }
 
@@ -27,17 +27,17 @@ export class LiveLog extends Log {
     if (!this.loaded.has(channel.topic)) this.loaded.set(channel.topic, new Series([], decoderOf(channel)));
   }
 
-  /** Take a message; it is shown when its tick is complete. @param {Arrival} arrival */
+  /** Store a message. It is shown when its tick is complete. @param {Arrival} arrival */
   take(arrival) {
-    // After a loss the server begins with the state of a time that is known.
+    // After a loss the server starts with a state whose time the log already has.
     if (arrival.tick <= this.last && (this.loaded.get(arrival.topic)?.length ?? 0) > 0) return;
     this.waiting.push(arrival);
   }
 
-  /** All messages up to a tick have arrived. @param {number} tick */
+  /** Show the messages up to a tick, which have all arrived. @param {number} tick */
   complete(tick) {
     this.last = Math.max(this.last, tick);
-    // A message that was sent again to a new viewer has the tick in which it was sent.
+    // A message repeated for a new viewer has the tick of its repetition.
     const ready = this.waiting.filter((arrival) => arrival.tick <= tick);
     if (ready.length === 0) return;
     if (this.first === 0) this.first = ready.reduce((least, arrival) => Math.min(least, arrival.tick), tick);
@@ -51,7 +51,7 @@ export class LiveLog extends Log {
     }
   }
 
-  /** Forget the oldest part if there is too much. Returns true if something was forgotten. */
+  /** Remove the oldest part above the limit. Returns true if something was removed. */
   trim() {
     if (this.bytes <= LIMIT.bytes) return false;
     this.first += Math.ceil((this.last - this.first) * LIMIT.share);
@@ -59,6 +59,6 @@ export class LiveLog extends Log {
     return true;
   }
 
-  /** Every topic that has arrived is loaded. */
+  /** Does nothing, because every received topic is loaded. */
   async load() {}
 }

@@ -75,7 +75,7 @@ test('lanes_grow_as_commands_and_answers_arrive', () => {
   };
   assert.deepEqual(update([[3, 'GOTO-PT']], [[3, 1]], 6), [[3, 6, 6, 'GOTO-PT']]);
   assert.deepEqual(update([], [[8, 1]], 9), [[3, 8, 9, 'GOTO-PT']]);
-  // The answer of the tick in which the next command arrives belongs to the first one.
+  // An answer in the tick in which the next command arrives belongs to the first command.
   assert.deepEqual(update([[12, 'GO-THRU']], [[12, 1]], 13), [
     [3, 8, 12, 'GOTO-PT'],
     [12, 13, 13, 'GO-THRU'],
@@ -100,7 +100,7 @@ test('job_lines_get_their_ticks_from_the_states_of_the_job', () => {
   push('/job/state', 1, { index: 0, began: 0, phase: 'plays', outcome: '' });
   push('/job/state', 10, { index: 1, began: 9, phase: 'plays', outcome: 'executing' });
   push('/job/state', 30, { index: 2, began: 29, phase: 'plays', outcome: 'executing' });
-  // The lines are repeated; that is no other job.
+  // The same lines again are not another job.
   push('/job/lines', 40, { lines });
   const shown = () => progress.update()?.map(({ text, start, end }) => [text, start, end]);
   assert.deepEqual(shown(), [

@@ -1,6 +1,6 @@
 // Reads an MCAP file, version 0 of the format. Chunks are decompressed when one of their channels is read.
 //
-// A file whose program was killed ends in the middle of a record; what stands before it is read. The browser
+// If the program was killed, its file ends inside a record. All records before it are read. The browser
 // inflates
 // "deflate", which `rcs-log page` writes. It decompresses "zstd", which a run writes, only if it is new
 // enough.
@@ -31,7 +31,7 @@ const MESSAGE_HEAD = 22;
  * @typedef {{ tick: number, data: Uint8Array }} Message
  */
 
-/** A file that was read up to its messages. */
+/** A file with all data read except its messages. */
 export class Mcap {
   constructor() {
     /** @type {Map<string, Channel>} Channels by topic. */
@@ -40,7 +40,7 @@ export class Mcap {
     this.attachments = new Map();
     /** @type {Map<string, Map<string, string>>} */
     this.metadata = new Map();
-    /** True if the file has its end; without it, the program that wrote it was killed. */
+    /** True if the file has its end. Otherwise the program that wrote it was killed. */
     this.complete = false;
     /** @type {Chunk[]} */
     this.chunks = [];
@@ -76,7 +76,7 @@ export class Mcap {
     let block = this.inflated.get(chunk);
     if (!block) {
       block = decompressed(chunk);
-      // A chunk of several channels is read several times, one of a single channel once.
+      // A chunk of a single channel is read only once, so it is not kept.
       if (chunk.channels.size !== 1) this.inflated.set(chunk, block);
     }
     return block;
@@ -130,7 +130,7 @@ export async function readMcap(bytes) {
   }
   file.complete = MAGIC.every((byte, at) => bytes[bytes.length - MAGIC.length + at] === byte);
   if (file.channels.size === 0) {
-    // The channels of a file without its end are in the chunks only.
+    // In a file without its end, only the chunks describe the channels.
     for (const chunk of file.chunks) {
       for (const [code, body] of records(await file.records(chunk))) file.describe(code, body);
     }

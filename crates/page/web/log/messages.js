@@ -1,4 +1,4 @@
-// The lines on `/log`: commands on their way down, what the cell met, warnings and errors.
+// The lines on `/log`: commands to each level, events in the cell, warnings and errors.
 
 /**
  * @typedef {'debug' | 'info' | 'warning' | 'error'} Level

@@ -13,7 +13,7 @@
 const ARM = ['turret', 'upper_arm', 'forearm', 'wrist_pitch', 'wrist_yaw', 'end_plate'];
 const PEDESTAL = ['pedestal_hand', 'pedestal_left_finger', 'pedestal_right_finger'];
 
-/** @type {Process[]} All, in the order in which the keys j and k go through them. */
+/** @type {Process[]} All processes, in the order of the keys j and k. */
 export const PROCESSES = [
   { id: 'workstation', name: 'Workstation', level: -1, tabled: false, meshes: [] },
   { id: 'task', name: 'Task', level: 0, tabled: true, meshes: [] },

@@ -39,11 +39,11 @@ const KIND = {
   sint64: 18,
 };
 const REPEATED = 3;
-/** Depth at which a message that contains itself ends. */
+/** Depth at which decoding of nested messages ends. */
 const DEPTH_LIMIT = 32;
 
 /**
- * Walks through the fields of a message, in place: a log has millions of them.
+ * Iterates over the fields of a message without making objects, because a log has millions of fields.
  *
  * After `next`, `number` is the number of the field. A number is in `value`; other fields are the bytes from `from` to
  * `to`, which are a text, a message or packed numbers.
@@ -62,7 +62,7 @@ export class Wire {
     this.isBlock = false;
   }
 
-  /** Move to the next field; false at the end. @throws {RangeError} if the message is damaged */
+  /** Move to the next field. Returns false at the end. @throws {RangeError} if the message is damaged */
   next() {
     if (this.at >= this.end) return false;
     const key = this.varint();

@@ -4,9 +4,9 @@
 
 import { idOf } from './processes.js';
 
-/** Ticks without a report after which a report begins another failure. */
+/** After this number of ticks without a report, the next report begins another failure. */
 const APART = 250;
-/** Codes of errors that are no report of a failure: the end of a contact, and the summary at the end of a run. */
+/** Codes of errors that are not reports of a failure: the end of a contact, and the summary at the end of a run. */
 const NO_REPORT = ['contact.ends', 'run.failed'];
 
 /** @typedef {import('./messages.js').Line} Line */
@@ -33,7 +33,7 @@ export class Reports {
     const process = idOf(line.source);
     const isContact = line.code === 'contact.begins';
     return {
-      // A contact is reported in the tick after.
+      // A contact is reported one tick later.
       tick: isContact ? line.tick - 1 : line.tick,
       kind: process ? 'process' : isContact ? 'collision' : 'cell',
       name: process ? 'Reported failure' : isContact ? 'Collision' : 'In the cell',
@@ -47,7 +47,7 @@ export class Reports {
 
 /** @param {Line} line */
 function isReport({ level, source, text, code }) {
-  // Task also has a line with the status of its command.
+  // The line with the status of Task's command is not a report.
   return (
     level === 'error' && !NO_REPORT.includes(code) && !(source === 'Task' && /^command \d+: /.test(text))
   );

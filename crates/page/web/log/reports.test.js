@@ -19,7 +19,7 @@ const LINES = [
   line(625, 'Task', 'command 5: error', 'error'),
 ];
 
-/** What the reports say after some lines. */
+/** The state of the reports after some lines. */
 function reported(lines) {
   const reports = new Reports();
   reports.add(lines);

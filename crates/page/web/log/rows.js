@@ -50,7 +50,7 @@ export function decisionAt(rows, tick) {
   const before = index > 0 ? rows.get(index - 1).step : '';
   return {
     since: rows.tick(index),
-    // A row that fires in every tick is written once; it fires until the message changes.
+    // A row that fires in every tick is written once, and fires until the message changes.
     fired: message.resting ? message.fired_tick : tick,
     table: message.table,
     row: message.row,
@@ -64,7 +64,7 @@ export function decisionAt(rows, tick) {
   };
 }
 
-/** The values of `work Busy, clock Running`. @param {string} text */
+/** The values of a text such as `work Busy, clock Running`. @param {string} text */
 export function valuesOf(text) {
   /** @type {Record<string, string>} */
   const values = {};

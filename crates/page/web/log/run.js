@@ -1,4 +1,4 @@
-// What a log says about the run as a whole: commands, events, the failure, the state of the robot.
+// Facts of the whole run: commands, events, the failure, the state of the robot.
 
 import { failuresOf } from './account.js';
 import { JobProgress, jobLines, lineAt } from './job.js';
@@ -20,7 +20,7 @@ import { TICK_S } from './units.js';
  * @typedef {'run' | 'fault' | 'estop' | 'pause' | 'done'} Mode
  */
 
-/** Messages of which the run keeps what it has read. */
+/** Topics whose messages the run reads and keeps. */
 const READ = {
   log: '/log',
   operator: '/operator',
@@ -42,7 +42,7 @@ export class Run {
     this.orders = new Map();
     const info = log.json('info.json');
     this.info = info ?? {};
-    /** Commands that `rcs-log info` has counted. */
+    /** True if `rcs-log info` has listed the commands. */
     this.counted = info !== null;
     /** @type {import('./job.js').RunCommand[]} */
     this.commands = this.info.commands ?? [];
@@ -63,7 +63,7 @@ export class Run {
     this.failures = failuresOf(this.why, this.reasons);
     this.reports = new Reports();
     /**
-     * What went wrong first; without `why.json` the first report of the last failure; null if nothing failed.
+     * The first failure. Without `why.json` the first report of the last failure; null if nothing failed.
      * @type {import('./account.js').Failure | null}
      */
     this.cause = this.failures[0] ?? null;
@@ -89,7 +89,7 @@ export class Run {
     this.update();
   }
 
-  /** Take in the messages up to the last tick: all of a log, or those that have arrived since the last call. */
+  /** Process the messages up to the last tick: all of a log, or those since the last call. */
   update() {
     const { log, readers } = this;
     this.last = log.last;
@@ -122,7 +122,7 @@ export class Run {
     );
   }
 
-  /** Forget what was before a tick. @param {number} tick */
+  /** Remove the data from before a tick. @param {number} tick */
   trim(tick) {
     const recent = (/** @type {{ tick: number }} */ it) => it.tick >= tick;
     this.lines = this.lines.filter(recent);
@@ -154,7 +154,7 @@ export class Run {
     return this.log.series(topic).latest(tick);
   }
 
-  /** How the run ended, in words; empty if the log has no end. */
+  /** The end of the run as a sentence; empty if the log has no end. */
   get result() {
     return this.log.end?.get('result') ?? '';
   }
@@ -164,7 +164,7 @@ export class Run {
     return lineAt(this.job, tick);
   }
 
-  /** What touches in a tick: the log has it in the tick after. @param {number} tick */
+  /** The contacts in a tick, which the log contains one tick later. @param {number} tick */
   contactsAt(tick) {
     return this.contacts[lastUpTo(this.contacts, tick + 1, (it) => it.tick)]?.contacts ?? [];
   }
@@ -175,7 +175,7 @@ export class Run {
   }
 
   /**
-   * Where vision was to find a part and did not: the part, its location, and the place in metres; null if it did.
+   * The part that vision did not find, its location, and the expected place in metres; null if vision found it.
    * @param {number} tick
    * @returns {{ part: string, location: string, place: Point } | null}
    */
@@ -197,7 +197,7 @@ export class Run {
     };
   }
 
-  /** Where vision was to find a part when the run failed; null if it failed otherwise. */
+  /** The expected place of the part that vision did not find; null if the run failed otherwise. */
   get expected() {
     return this.cause && this.missed(this.cause.tick);
   }
@@ -239,7 +239,7 @@ export class Run {
   }
 
   /**
-   * State of the robot in a tick. `note` says where it is known from, such as `recorded`.
+   * State of the robot in a tick. `note` states the source, such as `recorded`.
    * @param {number} tick
    * @param {string} [note]
    * @returns {{ mode: Mode, title: string, detail: string }}
@@ -250,7 +250,7 @@ export class Run {
     const pressed = this.view('/cell/controller', tick)?.pressed ?? [];
     const { cause } = this;
     const noted = (/** @type {string} */ text) => [note, text].filter(Boolean).join(', ');
-    // A run in progress may have recovered since.
+    // A run in progress may have recovered since the failure.
     if (cause && this.why && tick >= cause.tick) {
       const mode = cause.kind === 'emergency-stop' ? 'estop' : 'fault';
       return { mode, title: cause.name.toUpperCase(), detail: noted(`since tick ${cause.tick}`) };

@@ -1,4 +1,4 @@
-// The state of a process in a tick: its command, its status, and what it decided.
+// The state of a process in a tick: its command, its status, and its decision.
 
 import { decisionAt } from './rows.js';
 import { lastUpTo } from './series.js';
@@ -63,7 +63,7 @@ export function stateOf(run, id, tick) {
   if (!status) return { ...NOTHING, decision };
   const report = word(status.report);
   const reason = reasonText(status.reason ?? status.fault);
-  // A gripper that is not on the arm is not stepped, and T3 Interface gets a command in every tick.
+  // A gripper off the arm is not executed, and T3 Interface gets a command in every tick.
   const dormant = id.endsWith('_grip') && !order;
   const line = own === 'task' ? run.job[run.line(tick)]?.text : undefined;
   const command = order?.text ?? line ?? (id === 't3i' ? word(status.command) : '');

@@ -1,4 +1,4 @@
-// Decision tables: which row fits, which does not and why, and which would have fired with one other value.
+// Decision tables: the rows that fit, why others do not, and the rows that another value would have fired.
 
 /**
  * @typedef {{ name: string, doc: string }} Named
@@ -123,7 +123,7 @@ export function foldRows(reasons, matters, limit) {
     if (last - first > 1) runs.push({ first, last: last - 1 });
     first = Math.max(first, last);
   }
-  // The longest runs fold first, until the rest has room.
+  // The longest sequences of rows fold first, until the rest fits.
   const folded = new Set();
   let lines = rows.length;
   for (const run of [...runs].sort((a, b) => b.last - b.first - (a.last - a.first))) {

@@ -56,7 +56,7 @@ test('the_step_before_a_row_is_the_one_that_explains_it', () => {
   assert.equal(decision(2, 'start', 'closing', 'Closing'), 'start');
   assert.equal(decision(3, 'closing', 'closing'), 'closing');
   assert.equal(decision(3, 'closing', 'closing', '', 'opening'), 'opening');
-  // A command that is new begins in the first step, whatever the step of the one before was.
+  // A new command begins in the first step, for any step of the previous command.
   assert.equal(decision(2, 'closing', 'closing', 'Closing'), 'Start');
 });
 

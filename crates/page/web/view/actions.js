@@ -5,10 +5,10 @@ import { camerasOf, wholeRun, windowOf } from './ui.js';
 
 /** Ticks of a second. */
 const SECOND = 25;
-/** Fewest ticks in the window of the timeline. */
+/** Smallest number of ticks in the window of the timeline. */
 const LEAST = 12;
 
-/** Keys with their actions, and what the list of keys says. @type {[string[], string, string, string][]} */
+/** Keys with their actions and their texts in the list of keys. @type {[string[], string, string, string][]} */
 export const KEYS = [
   [['1'], 'view:operate', '1 2 3', 'Operate, Explain, Trace'],
   [['2'], 'view:explain', '', ''],
@@ -60,7 +60,7 @@ export function seek({ run, ui }, tick) {
   follow(ui);
 }
 
-/** Show the newest tick; the window of the timeline moves on when little room is left. @param {import('./ui.js').Context} context */
+/** Show the newest tick; the timeline moves if needed. @param {import('./ui.js').Context} context */
 export function followRun({ run, ui }) {
   ui.tick = run.last;
   const [first, last] = ui.window;

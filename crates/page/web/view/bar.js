@@ -10,11 +10,11 @@ const ICON = { run: 'run', fault: 'fault', estop: 'estop', pause: 'pause', done:
 const LONG = 9;
 /** Ticks of a second. */
 const TICKS = 25;
-/** Ticks of a line of the job that is drawn with the smallest width. */
+/** A line of the job with at most this number of ticks has the smallest width. */
 const SHORT = 420;
 
 /**
- * What the bar says. Of a run it is the newest state, also while the page looks back.
+ * The content of the bar. For a run it is the newest state, even while the page shows the past.
  * @param {import('./ui.js').Context} context
  */
 function state({ run, ui, live }) {
@@ -128,7 +128,7 @@ function job(run, tick, mode) {
  * @param {string} mode
  */
 function segment(line, index, at, tick, mode) {
-  // A line that has not ended has no known length.
+  // A line that has not ended has no known duration.
   const length = line.end === Infinity ? SHORT * 2 : line.end - line.start;
   const width = line.station ? 0.4 : Math.max(1, Math.min(6, length / SHORT));
   const done = index < at ? 'd' : index === at ? `c ${mode}` : '';

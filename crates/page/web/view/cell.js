@@ -51,13 +51,13 @@ export class CellView {
     /** Places of the tool point by tick. @type {Map<number, Point>} */
     this.places = new Map();
     this.turn = { azimuth: 0, elevation: 0, distance: 1 };
-    /** The picture is not the one of the shown tick. */
+    /** True if the picture is not that of the shown tick. */
     this.isDue = false;
     /** @type {Renderer | null} */
     this.renderer = null;
     this.trouble = '';
     this.prepare();
-    // A tablet takes the graphics context from a page in the background.
+    // A tablet can withdraw the graphics context of a page in the background.
     this.canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
     this.canvas.addEventListener('webglcontextrestored', () => this.prepare());
     new ResizeObserver(() => (this.isDue = true)).observe(this.canvas);
@@ -80,7 +80,7 @@ export class CellView {
     this.urls = new Map();
   }
 
-  /** Hand the meshes to the graphics processor. */
+  /** Upload the meshes to the graphics processor. */
   prepare() {
     const { log, last } = this.run;
     try {
@@ -103,7 +103,7 @@ export class CellView {
     this.turn.distance *= nearer;
   }
 
-  /** The oldest part of the run is gone. */
+  /** Remove data of the oldest part of the run, which was removed. */
   forget() {
     const { log } = this.run;
     this.moving = new Reader(log, '/tf');
@@ -125,7 +125,7 @@ export class CellView {
     byId('instruments').hidden = !room;
     if (room) patch(byId('instruments'), ...instruments(context));
     patch(byId('cell-overlay'), this.overlay(context));
-    // At the end, since the instruments change the size of the picture.
+    // The picture is drawn last, because the instruments change its size.
     this.paint(context, colour);
   }
 
@@ -189,7 +189,7 @@ export class CellView {
     };
   }
 
-  /** Where the tool point was, up to a tick. @param {number} tick */
+  /** The places of the tool point up to a tick. @param {number} tick */
   trail(tick) {
     if (this.places.size > KEPT) this.places.clear();
     const points = [];
@@ -217,7 +217,7 @@ export class CellView {
       (ui.camera === 'place' && this.run.expected?.place) ||
       this.frames.place(TOOL_POINT, ui.tick) || [0, 0, 0];
     const target = /** @type {Point} */ (preset.target ?? [followed[0], followed[1], followed[2] + 0.12]);
-    // A narrow picture of the whole cell needs more distance, and looks more from above.
+    // In a narrow picture, the view of the whole cell needs more distance and a higher camera.
     const wide = preset.target ? Math.max(1, 1.38 / aspect) : 1;
     const steeper = preset.target && preset.elevation < 1.2 ? Math.max(0, 1 - aspect) * 0.62 : 0;
     return {
@@ -271,7 +271,7 @@ export class CellView {
     const isNear = !CAMERAS[ui.camera].target;
     for (const { frame, name, where } of run.parts(ui.tick)) {
       const at = this.frames.place(frame, ui.tick);
-      // A part that is not in the cell yet is at the origin of the world.
+      // A part that has not been delivered is at the origin of the world.
       if (!at || Math.hypot(...at) < 1e-3 || name === missed?.part) continue;
       const lines = isNear && where ? [name, where] : [name];
       labels.add('label part', renderer.project(at), lines, [0, isNear ? 44 : 18], false);
@@ -337,7 +337,7 @@ export class CellView {
 
   /** @param {import('../log/run.js').Run} run @param {import('./ui.js').Ui} ui */
   cameraPicture(run, ui) {
-    // The picture is written in the tick after the answer.
+    // The picture is written one tick after the answer.
     const index = this.pictures.index(ui.tick + 1);
     const vision = run.vision[lastUpTo(run.vision, ui.tick, (it) => it.tick)]?.status ?? 'idle';
     const failed = !/^(idle|busy|done)$/.test(vision);

@@ -1,6 +1,6 @@
-// What an operator can do: stop, PAUSE, go, the velocity knob, the job, and any line of an operator.
+// The controls of an operator: stop, PAUSE, go, the velocity knob, the job, and any line of an operator.
 //
-// Stopping acts at once, what moves the robot needs a hold of 0.7 s, and a button that cannot act says why.
+// A stop acts at once. A button that moves the robot must be held for 0.7 s. A disabled button states the reason.
 
 import { h } from './dom.js';
 import { icon } from './icons.js';
@@ -9,12 +9,12 @@ import { icon } from './icons.js';
 export const KNOB_STEP = 5;
 /** Marks of the knob, percent. */
 const MARKS = [0, 25, 50, 75, 100];
-/** Most words that are offered. */
+/** Largest number of words that are offered. */
 const OFFERED = 8;
 const NOTE = [h('b', {}, 'No safety function.'), ' The emergency stops are at the robot.'];
 
 /**
- * What a button does: the line that it sends, or why it cannot.
+ * The effect of a button: the line that it sends, or the reason why it is disabled.
  * @typedef {{ line: string | null, text: string }} Effect
  * @typedef {{ stop: Effect, pause: Effect, go: Effect, wait: Effect, skip: Effect, leave: Effect, knob: Effect }}
  *   Effects
@@ -139,12 +139,12 @@ function watching(live) {
   );
 }
 
-/** Who is logged in at the gateway; null without a gateway. @param {import('./session.js').Session} live */
+/** The person who is logged in at the gateway; null without a gateway. @param {import('./session.js').Session} live */
 function person(live) {
   return location.protocol === 'https:' ? live.connection.name.replace(/^page\d+\./, '') : null;
 }
 
-/** The way to the gateway's login. @param {import('./session.js').Session} live */
+/** A link to the gateway's login. @param {import('./session.js').Session} live */
 function account(live) {
   const name = person(live);
   if (name === null) return null;

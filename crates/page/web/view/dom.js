@@ -61,7 +61,7 @@ function put(parent, old, made) {
 
 /** @param {globalThis.Element} element @param {Props} props */
 function assign(element, props) {
-  // The size of a canvas belongs to whoever paints it.
+  // The painter of a canvas sets its size.
   const removable = element instanceof HTMLCanvasElement ? [] : [...element.attributes];
   for (const { name } of removable) {
     if (!present(props[name])) element.removeAttribute(name);
@@ -71,7 +71,7 @@ function assign(element, props) {
     const text = value === true ? '' : String(value);
     if (element.getAttribute(name) === text) continue;
     element.setAttribute(name, text);
-    // What a person has typed stays; the program sets the value of a field only when it changes.
+    // Typed text stays, because the program sets the value of a field only when it changes.
     if (name === 'value' && element instanceof HTMLInputElement) element.value = text;
   }
 }

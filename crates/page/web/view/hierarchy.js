@@ -13,7 +13,7 @@ const KIND = { executing: 'exec', done: 'ok', idle: 'idle', off: 'off', failed: 
 const STRIP = 200;
 
 /**
- * Rows of the grid: a process, the kind of the line to its right, and what is right of it.
+ * Rows of the grid: a process, the kind of the line to its right, and the processes to the right of the line.
  * @type {[string, string, string[]][]}
  */
 const ROWS = [

@@ -41,7 +41,7 @@ const ICONS = {
 };
 
 /**
- * An icon; readers of the screen pass over it.
+ * An icon, which screen readers skip.
  * @param {string} name
  * @param {string} [kind] further classes
  */

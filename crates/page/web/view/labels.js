@@ -1,4 +1,4 @@
-// Names and values at things in the picture of the cell.
+// Labels with names and values in the picture of the cell.
 
 import { h } from './dom.js';
 
@@ -26,7 +26,7 @@ export class Labels {
    * @param {[number, number] | null} at
    * @param {string[]} lines
    * @param {[number, number]} offset
-   * @param {boolean} always show it even where another label is
+   * @param {boolean} always show it even over another label
    */
   add(kind, at, lines, [right, down], always) {
     if (!at || at[0] < 0 || at[0] > this.width || at[1] < 0 || at[1] > this.height) return;

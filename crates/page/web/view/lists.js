@@ -1,10 +1,10 @@
-// Lists in the place of the table: the fields of all buffers, and the messages.
+// Lists that replace the table: the fields of all buffers, and the messages.
 
 import { duration, seconds } from '../log/units.js';
 import { h } from './dom.js';
 import { icon } from './icons.js';
 
-/** Topics that are no buffers. */
+/** Topics that are not buffers. */
 const NO_BUFFERS = /^\/(tf|tf_static|meshes|names|log|camera|contacts|joint_states|operator)$|\/row$/;
 /** Greatest number of fields that are shown. */
 const LIMIT = 200;

@@ -1,9 +1,9 @@
-// What covers the picture of a run when it is not the present one.
+// Notices over the picture of a run when it is not the present one.
 
 import { h } from './dom.js';
 
 /**
- * That the picture is not the present one: the page looks back, or nothing arrives.
+ * The notice that the picture is old, because the page shows the past or receives nothing.
  * @param {import('../log/run.js').Run} run
  * @param {import('./ui.js').Ui} ui
  * @param {import('./session.js').Session} live
@@ -32,7 +32,7 @@ export function notices(run, ui, live) {
       ),
       h('p', {}, 'STOP cannot be sent from here. Use the emergency stop at the robot.'),
       loss.attempt ? h('p', { class: 'dim' }, `Trying again: ${loss.attempt}`) : null,
-      // Behind the gateway a login may have ended.
+      // With a gateway, the login may have expired.
       location.protocol === 'https:' ? h('p', {}, h('a', { href: '/login' }, 'Log in again')) : null,
     );
   }

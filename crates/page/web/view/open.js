@@ -1,8 +1,8 @@
-// Where the page finds what it shows, and what it says without it.
+// Finds the log or the run that the page shows, or asks for a log.
 
 import { byId, h, patch } from './dom.js';
 
-/** Say what went wrong, where the person looks. @param {unknown} error */
+/** Show an error in the middle of the page. @param {unknown} error */
 export function fail(error) {
   const start = byId('start');
   start.hidden = false;
@@ -53,7 +53,7 @@ export function ask(show) {
 }
 
 /**
- * What the page shows.
+ * The data that the page shows.
  * @typedef {{ name: string, bytes: Uint8Array, isLive: boolean }} Found `isLive`: the bytes are the start of a run
  */
 

@@ -1,4 +1,4 @@
-// Fingers and keys on the controls: a stop acts when it is touched, a go when it was held.
+// Touches and keys on the controls. A stop acts when it is touched, a go after it was held.
 
 import { completed, completions, effects, KNOB_STEP } from './controls.js';
 import { byId } from './dom.js';
@@ -17,7 +17,7 @@ const AT_ONCE = ['stop', 'pause', 'wait', 'leave'];
  * @typedef {keyof import('./controls.js').Effects} Operation
  */
 
-/** Let the controls act. @param {ContextOf} contextOf @param {() => void} changed */
+/** Connect the controls with their actions. @param {ContextOf} contextOf @param {() => void} changed */
 export function followControls(contextOf, changed) {
   const pane = byId('controls');
   followButtons(pane, contextOf, changed);
@@ -25,7 +25,7 @@ export function followControls(contextOf, changed) {
   followForms(pane, contextOf, changed);
 }
 
-/** Carry out an operation, if it can be. @param {import('./ui.js').Context} context @param {Operation} id */
+/** Carry out an operation, if it is enabled. @param {import('./ui.js').Context} context @param {Operation} id */
 export function operate(context, id) {
   const { line } = effects(context)[id];
   if (line !== null && context.live?.mayOperate) void context.live.ask(line);
@@ -158,7 +158,7 @@ function followForms(pane, contextOf, changed) {
     const { live, ui, run } = contextOf();
     if (event.key === 'Tab' && input.value !== '') {
       const full = completed(input.value, completions(input.value, run.words));
-      // Without a completion the key leaves the field, as everywhere.
+      // Without a completion the Tab key leaves the field, as usual.
       if (full === input.value) return;
       [input.value, ui.typed] = [full, full];
     } else if (event.key === 'ArrowUp' || event.key === 'ArrowDown') {

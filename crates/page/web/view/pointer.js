@@ -100,7 +100,7 @@ function dragTimeline(pane, contextOf, changed) {
 }
 
 /**
- * What is under the pointer in the timeline.
+ * Show a tip about the item under the pointer in the timeline.
  * @param {PointerEvent} event
  * @param {import('./ui.js').Context} context
  */

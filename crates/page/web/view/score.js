@@ -1,4 +1,4 @@
-// The table as a score: time runs to the right up to the row numbers, and in each tick a bar lies on one row.
+// The table as a score: time runs to the right, and in each tick a bar marks the row that fired.
 
 import { rowsBetween } from '../log/rows.js';
 import { context2d } from './dom.js';
@@ -25,7 +25,7 @@ export function scoreTick(x, width, tick) {
 }
 
 /**
- * Take room from the score if the table needs more than was estimated.
+ * Make the score narrower if the table needs more room than estimated.
  * @param {HTMLElement} pane
  */
 export function fitScore(pane) {
@@ -96,7 +96,7 @@ export function paintScore({ run, ui }, pane, table, failed, colour) {
 }
 
 /**
- * Where the rows are in the pane; folded rows share the place of their line.
+ * The places of the rows in the pane. Folded rows share the place of their line.
  * @param {HTMLTableElement} table
  */
 function placesOf(table) {

@@ -1,4 +1,4 @@
-// A run in progress: its connection, what arrives, and what the person at the page asks of it.
+// A run in progress: its connection, its messages, and the requests of the person at the page.
 
 import { Connection, LOOK } from '../log/connection.js';
 import { seconds, TICK_S } from '../log/units.js';
@@ -39,23 +39,23 @@ export class Session {
       },
     });
     this.takeToken();
-    // A timer, and not the frames: a browser that draws slowly, or not at all, must see a silence in time.
+    // A timer detects silence in time, even in a browser that draws slowly or not at all.
     setInterval(() => this.connection.watch(), LOOK);
   }
 
-  /** Tick of a time. @param {bigint} time */
+  /** The tick at a time. @param {bigint} time */
   tick(time) {
     return Number((time - this.zero) / TICK_NS);
   }
 
   /** @param {any} info */
   begin(info) {
-    // Another run has another job and another time: the page of that run is needed.
+    // Another run has another job and another start time, so it needs its own page.
     if (this.id !== '' && this.id !== info.sessionId) location.reload();
     this.id = info.sessionId;
   }
 
-  /** The token of the address or of this tab. The address must not keep it: it would stay in the history. */
+  /** The token of the address or of this tab. It is removed from the address, to keep it out of the history. */
   takeToken() {
     const hash = new URLSearchParams(location.hash.slice(1));
     const given = hash.get('token');
@@ -82,7 +82,7 @@ export class Session {
     return this.connection.right === 'accepted' && this.connection.service !== null;
   }
 
-  /** Why nothing arrives, in parts; null if messages arrive. */
+  /** The reason why no messages arrive, in parts; null if messages arrive. */
   get loss() {
     const { state, heard, attempts, next } = this.connection;
     if (state === 'ok') return null;
@@ -114,7 +114,7 @@ export class Session {
     void this.ask(line);
   }
 
-  /** How long ago a tick was, in words. @param {number} tick */
+  /** The time since a tick, as text. @param {number} tick */
   ago(tick) {
     return `${((this.log.last - tick) * TICK_S).toFixed(1)} s ago, ${seconds(tick)}`;
   }

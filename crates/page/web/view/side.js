@@ -1,4 +1,4 @@
-// What an operator needs beside the cell: job, hand, robot, messages.
+// Information for the operator next to the cell: job, hand, robot, messages.
 
 import { processOf } from '../log/processes.js';
 import { remedyOf } from '../log/explanation.js';
@@ -18,7 +18,7 @@ const JOINTS = [
   ['yaw', -90, 90],
   ['roll', -135, 135],
 ];
-/** Distance from a limit that is marked, degrees. */
+/** A joint nearer to a limit than this is marked, degrees. */
 const NEAR = 10;
 /** Lines of the job before the present one, lines in all, and messages. */
 const SHOWN = { before: 1, lines: 12, linesOnPhone: 6, messages: 5 };
@@ -53,7 +53,7 @@ function failureCard(run, ui) {
   );
 }
 
-/** Why the job waits or has failed, and what to do. @param {import('../log/run.js').Run} run @param {import('./ui.js').Ui} ui */
+/** Why the job waits or has failed, and the remedy. @param {import('../log/run.js').Run} run @param {import('./ui.js').Ui} ui */
 function waitCard(run, ui) {
   const job = run.view('/job/state', ui.tick);
   if (!job?.reason) return null;
@@ -79,7 +79,7 @@ function jobBlock(run, ui) {
     const number = first + index;
     const place = number < at ? 'past' : number === at ? `cur ${mode}` : 'fut';
     const [verb, ...words] = line.text.split(' ');
-    // A line that ended before the page was opened has no known duration.
+    // The duration of a line that ended before the page was opened is unknown.
     const unknown = line.station || number > at || line.end === line.start;
     const time = unknown ? '' : duration(Math.min(ui.tick, line.end) - line.start);
     return h(
@@ -148,7 +148,7 @@ function handBlock(run, ui) {
   );
 }
 
-/** The fingers as they are. @param {any} grip @param {boolean} holds */
+/** A drawing of the fingers at their opening. @param {any} grip @param {boolean} holds */
 export function fingers(grip, holds) {
   const open = 7 + (Math.max(0, Math.min(5, grip.position / 100)) / 5) * 40;
   const line = (/** @type {string} */ d, /** @type {string} */ colour, width = 1) =>
@@ -242,7 +242,7 @@ export function speedAt(run, tick) {
     else high = middle;
   }
   const last = speeds[low - 1];
-  // A status that does not change is not written: then the robot is at rest.
+  // An unchanged status is not written, so an old status means that the robot is at rest.
   return last && tick - last.tick <= 1 ? last.value : 0;
 }
 

@@ -1,4 +1,4 @@
-// The rows of a decision table: heads with the values of this tick, conditions that fit or do not, and folds.
+// The rows of a decision table: heads with the values of this tick, matching and other conditions, and folds.
 
 import { STEP, actionDoc, plain, valueDoc } from '../log/tables.js';
 import { h } from './dom.js';
@@ -116,7 +116,7 @@ export function tableRow(
 }
 
 /**
- * A condition: fits, does not fit, or unknown.
+ * The cell of a condition, which fits, does not fit, or is unknown.
  * @param {string[] | undefined} allowed
  * @param {string | undefined} value
  * @param {string} name
@@ -153,7 +153,7 @@ export function fold({ first, last, by }, { list, variables, steps }) {
 }
 
 /**
- * All rows as marks at the right.
+ * A ruler at the right with a mark for each row.
  * @param {import('./table.js').Consultation} shown
  * @param {string[][]} reasons
  * @param {Map<number, unknown>} near

@@ -1,4 +1,4 @@
-// A decision table: what the process decided in words, and all rows with what fits and what does not.
+// A decision table: the decision of the process as a sentence, and all rows with their matching and other conditions.
 
 import { processOf } from '../log/processes.js';
 import { decisionAt } from '../log/rows.js';
@@ -30,7 +30,7 @@ const WIDTH = { letter: 6.1, column: 22, number: 40, spare: 26, score: [54, 92, 
 const HEIGHT = { row: 24, text: 30, phone: 56, rest: 178 };
 
 /**
- * What the pane shows; null if the process has no table or has decided nothing.
+ * The content of the pane; null if the process has no table or has decided nothing.
  * @param {import('./ui.js').Context} context
  * @returns {Consultation | null}
  */
@@ -171,7 +171,7 @@ function head({ ui }, shown, panels, folds) {
       shown.table.name,
       h('small', {}, `table ${shown.number}`),
     ),
-    // The word stays with the first chip: if that has no room, neither has the word.
+    // The word and the first chip are kept together, so they wrap to the next line together.
     chips.length
       ? h('div', { class: 'chips' }, h('span', {}, h('small', {}, 'also'), chips[0]), chips.slice(1))
       : null,
@@ -193,7 +193,7 @@ function head({ ui }, shown, panels, folds) {
 }
 
 /**
- * What the row does and why, in words.
+ * The action of the row and its reason, as a sentence.
  * @param {import('./ui.js').Context} context
  * @param {Consultation} shown
  */
@@ -243,7 +243,7 @@ function sentence({ ui }, { table, row, values, step, decision, decides, failed 
   );
 }
 
-/** What the table is for, and what its names mean. @param {import('../log/tables.js').Table} table */
+/** The purpose of the table, and what its names mean. @param {import('../log/tables.js').Table} table */
 function about(table) {
   const asked = new Set(table.rows.flatMap((row) => Object.keys(row.when)));
   const variables = table.variables.filter((it) => asked.has(it.name) && it.doc);
@@ -308,7 +308,7 @@ function withoutStop(text) {
   return text.replace(/\.$/, '');
 }
 
-/** A sentence to continue another one; names stay as they are. @param {string} text */
+/** A sentence without its capital letter, to continue another one. Names do not change. @param {string} text */
 function lower(text) {
   const plainText = withoutStop(text);
   return /^[A-Z][a-z]/.test(plainText) ? plainText[0].toLowerCase() + plainText.slice(1) : plainText;

@@ -16,7 +16,7 @@ const KIND = { move: 'k-move', hand: 'k-hand', look: 'k-look', change: 'k-chg', 
  * @typedef {{ x: number, text: string, look: Look, left: number, width: number }} Flag
  */
 
-/** What does not change while the page moves in time, painted once. */
+/** The part of the picture that does not depend on the present tick, painted once. */
 const still = { canvas: document.createElement('canvas'), key: '' };
 
 /**
@@ -151,7 +151,7 @@ class Painter {
       const right = Math.min(scale.width + 2, scale.x(bar.end));
       const gap = right - left > 5 ? 1 : 0.35;
       this.block(bar.kind, left, top + 2, Math.max(0.8, done - left - gap), height - 3);
-      // A command that has ended waits for the next one: a thin line.
+      // A thin line shows the wait from the end of a command to the next one.
       if (right - done > 1.5 && bar.kind !== 'pause') {
         to.fillStyle = colour[KIND[bar.kind]];
         to.fillRect(done, top + height / 2 - 1, right - done - gap, 2);
@@ -237,7 +237,7 @@ class Painter {
     to.restore();
   }
 
-  /** The events; where several are close together, the gravest. @param {number} y */
+  /** The events. Where several are close together, only the gravest is painted. @param {number} y */
   events(y) {
     const { run, scale } = this;
     /** @type {number[]} */
@@ -314,7 +314,7 @@ class Painter {
     to.lineWidth = 1.2;
     to.beginPath();
     to.moveTo(clip(0), y(0));
-    // Of the values in a pixel the greatest is drawn: a run of 20 minutes has 25 in each.
+    // Only the greatest value in a pixel is drawn, because a run of 20 minutes has 25 values in each.
     let [drawn, peak] = [-Infinity, 0];
     points.forEach(({ tick, value }, index) => {
       const next = points[index + 1]?.tick ?? run.last;
@@ -382,7 +382,7 @@ class Painter {
 }
 
 /**
- * As much of a text as fits, with an ellipsis; empty if hardly anything does.
+ * The beginning of a text that fits, with an ellipsis; empty if hardly anything fits.
  * @param {CanvasRenderingContext2D} to
  * @param {string} text
  * @param {number} width

@@ -1,4 +1,4 @@
-// The timeline: heads of the lanes, tools, and where things are in it.
+// The timeline: heads of the lanes, tools, and positions.
 
 import { decisionAt } from '../log/rows.js';
 import { TABLED } from '../log/processes.js';
@@ -33,7 +33,7 @@ const KINDS = [
   ['pause', 'pauses'],
 ];
 
-/** Where ticks are in the timeline. */
+/** Converts between ticks and positions in the timeline. */
 export class Scale {
   /** @param {[number, number]} window @param {number} width */
   constructor([first, last], width) {
@@ -65,7 +65,7 @@ export class Scale {
 }
 
 /**
- * The lanes that the present view has room for.
+ * The lanes for which the present view has room.
  * @param {import('./ui.js').Context} context
  * @param {import('./dom.js').Size} size
  * @returns {Strip[]}
@@ -147,7 +147,7 @@ export function timePane(context, size) {
   ];
 }
 
-/** What a lane reads in this tick. @param {import('./ui.js').Context} context @param {Strip} strip */
+/** The value of a lane in this tick. @param {import('./ui.js').Context} context @param {Strip} strip */
 function reading({ run, ui }, { id }) {
   if (id === 'speed') return speed(ui.units, speedAt(run, ui.tick));
   if (id === 'force') {

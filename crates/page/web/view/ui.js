@@ -1,4 +1,4 @@
-// What the person at the page has chosen. Nothing of it is in the log.
+// The choices of the person at the page, which are not in the log.
 
 /**
  * @typedef {'operate' | 'explain' | 'trace'} View
@@ -41,7 +41,7 @@ export const VIEWS = /** @type {[View, string, string][]} */ ([
 ]);
 
 /**
- * The places of the camera that a run has something for.
+ * The camera presets for which the run has a target.
  * @param {import('../log/run.js').Run} run
  */
 export function camerasOf(run) {
@@ -79,7 +79,7 @@ export function wholeRun(run) {
 
 /** @param {import('../log/run.js').Run} run @param {boolean} isLive @returns {Ui} */
 export function firstUi(run, isLive) {
-  // A page of a run begins with the present.
+  // The page of a run starts at the present tick.
   const cause = isLive ? null : run.cause;
   return {
     view: cause ? 'trace' : 'explain',

@@ -1,4 +1,4 @@
-// Why it failed: orders go down, the cause is the deepest card, reports come up. Or, if it did not fail, what
+// The chain of a failure: commands go down to the cause, the deepest card, and reports go up. Without a failure, what
 // was done.
 
 import { chainOf, remedyOf } from '../log/explanation.js';
@@ -126,7 +126,7 @@ function line(link, ui, badge) {
 }
 
 /**
- * Depth of a link: that of the process which got the command, or which reports.
+ * Depth of a link: the level of the process that got the command or that reports.
  * @param {import('../log/explanation.js').Link} link
  */
 function levelOf(link) {

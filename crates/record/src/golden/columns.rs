@@ -100,7 +100,7 @@ fn change(column: &Column, due: &mut Option<u64>, rest: &mut &[u8], image: &mut 
         field.copy_from_slice(bytes);
         *rest = behind;
     }
-    // A gap of zero ticks would never be due again.
+    // After a gap of zero ticks, a column would never be due again.
     *due = match rest.is_empty() {
         true => None,
         false => Some((*due)?.checked_add(take_varint(rest).filter(|gap| *gap > 0)?)?),

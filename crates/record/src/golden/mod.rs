@@ -42,7 +42,7 @@ use crate::{
 };
 
 const MAGIC: [u8; 8] = *b"RCSGOLD\x01";
-/// Level of the compression, since a golden is written once and read a thousand times.
+/// Level of the compression. It is high, because a golden is written once and read a thousand times.
 const COMPRESSION: i32 = 19;
 const LARGEST: usize = 1 << 30; // greatest size of an unpacked golden, bytes: a day of running is less
 const FILE: u64 = 1 << 28; // largest file of a golden, bytes
@@ -187,7 +187,7 @@ pub fn from_log(log: &Log) -> Result<Golden, GoldenError> {
     }))
 }
 
-/// The metadata that a golden keeps: those that define the run, without time and directory.
+/// The metadata that a golden keeps. They define the run, and exclude its time and directory.
 fn kept(run: &BTreeMap<String, String>) -> BTreeMap<String, String> {
     let keys = ["job", "seed", "faults"];
     run.iter()

@@ -34,10 +34,10 @@ pub const FIRST: u64 = 1;
 const HEAD_HASH: usize = HEAD - 8; // position of the hash in the head
 const IDENTITY: usize = 28; // position of the identity in the head
 
-/// What a controller knows after a tick.
+/// The knowledge of a controller after a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Entry {
-    /// The last tick of which it is true.
+    /// The last tick for which the entry is valid.
     pub tick: Tick,
     /// Milliseconds since 1970; 0 in fast clock.
     pub written: u64,
@@ -115,7 +115,7 @@ pub fn layout_of_entries() -> u64 {
     digest.value()
 }
 
-/// Also returns the hash on which those of its slots are based. An identity that is too long is cut at a line.
+/// Also returns the hash on which the hashes of its slots are based. A too long identity is cut at a line.
 #[must_use]
 pub fn head(identity: &Identity) -> (Vec<u8>, u64) {
     let mut text = String::new();
@@ -140,7 +140,7 @@ pub fn head(identity: &Identity) -> (Vec<u8>, u64) {
     (bytes, hash)
 }
 
-/// A journal without entries or with a first one, and the hash on which those of its slots are based.
+/// A journal with at most one entry, and the hash on which the hashes of its slots are based.
 #[must_use]
 pub fn begun(identity: &Identity, first: Option<&Entry>) -> (Vec<u8>, u64) {
     let (mut bytes, hash) = head(identity);
@@ -168,7 +168,7 @@ pub fn fill(slot: &mut [u8], of_head: u64, sequence: u64, entry: &Entry) {
     *place = hash.to_le_bytes();
 }
 
-/// Read a journal. Fails unless the newest entry is certain, apart from one entry that was being written.
+/// Read a journal. Fails unless its newest complete entry is certain. One later entry may be incomplete.
 pub fn read(bytes: &[u8]) -> Result<Contents, FormatError> {
     if !bytes.starts_with(&MAGIC) {
         return Err(FormatError::Foreign);
@@ -211,7 +211,7 @@ pub fn read(bytes: &[u8]) -> Result<Contents, FormatError> {
     let Some((newest, entry)) = newest else {
         return Err(if damaged == 0 { FormatError::Empty } else { FormatError::Damaged { damaged } });
     };
-    // Entries are numbered without a gap: only the one after the newest can be cut off.
+    // Entries are numbered without a gap, so only the one after the newest can be incomplete.
     let at = |sequence: u64| slots.get((place(sequence) - HEAD) / SLOT);
     let before =
         (1..).take(SLOTS - 1).filter_map(|back| newest.checked_sub(back)).filter(|number| *number > 0);
@@ -314,7 +314,7 @@ mod tests {
         Entry { tick: Tick(tick), line: 3, ..Entry::default() }
     }
 
-    /// A journal with the entries 1 to `last`; entry `n` is of tick `100 + n`.
+    /// A journal with the entries 1 to `last`. Entry `n` has tick `100 + n`.
     fn journal(last: u64) -> Vec<u8> {
         let (mut bytes, of_head) = begun(&identity(), None);
         for sequence in 1..=last {

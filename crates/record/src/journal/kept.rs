@@ -29,7 +29,7 @@ pub fn kept(memory: &CommonMemory) -> CommonMemory {
     kept
 }
 
-/// Kept buffers without the values that sensors give again. Two ticks with equal knowledge need one entry.
+/// Kept buffers without values that sensors measure again. Two ticks with equal results need only one entry.
 #[must_use]
 pub fn knowledge(kept: &CommonMemory) -> CommonMemory {
     let mut known = *kept;
@@ -88,8 +88,8 @@ pub fn resumed(kept: &CommonMemory, tick: Tick) -> CommonMemory {
     memory
 }
 
-/// Kept buffers after which the command under way may have changed the cell. The held object, the place and the path of
-/// the robot, and what the pedestal's hand holds are then not known.
+/// Kept buffers after which the command under way may have changed the cell. The held object, the robot's place and
+/// path, and the part in the pedestal's hand are then not known.
 #[must_use]
 pub fn doubted(kept: &CommonMemory) -> CommonMemory {
     let mut memory = *kept;

@@ -7,7 +7,7 @@
 //!
 //! The tick replaces the entry that the thread has not taken, so it never waits and nothing queues up. An entry is due
 //! when the knowledge changes, and once per second. The file has its full length from the beginning, so a full disk
-//! does not stop it. After a failed write the next entry is tried, and [`Journal::trouble`] reports it; the run
+//! does not affect it. After a failed write the next entry is tried, and [`Journal::trouble`] reports it; the run
 //! continues.
 
 mod format;
@@ -36,7 +36,7 @@ pub use self::{
 
 pub const HEARTBEAT: u64 = 25; // ticks after which an entry is due although nothing has changed: one second
 
-/// Time in which the disk must take an entry, ms of the clock of the entries. In fast clock the run does not wait.
+/// Time within which the disk must store an entry, ms of the entries' clock. In fast clock the run does not wait.
 const LATE: u64 = 5_000;
 
 #[derive(Debug, thiserror::Error)]
@@ -181,7 +181,7 @@ impl Journal {
         }
     }
 
-    /// `Some(None)` after it has ended; each change is returned once. Call it between two ticks.
+    /// Returns each change of the trouble once, and `Some(None)` at its end. Call it between two ticks.
     pub fn trouble(&mut self) -> Option<Option<String>> {
         let Ok(state) = self.shared.state.try_lock() else { return None };
         let (tick, written) = state.since;
@@ -310,7 +310,7 @@ impl Writer {
         }
     }
 
-    /// Write the slot. An entry that fails is followed by another one in the same slot, so the earlier entries stay.
+    /// Write the slot. After a failed write the next entry uses the same slot, so the earlier entries stay.
     fn write(&mut self) -> io::Result<()> {
         match fs::metadata(&self.path) {
             Ok(found) if (found.dev(), found.ino()) == self.identity => {}
@@ -354,7 +354,7 @@ mod tests {
     fn entry_is_due_on_change_and_once_per_second() {
         let (_directory, path, mut journal) = started(None);
         let due = |journal: &Journal| journal.has_last.then_some(journal.last.0.tick.0);
-        // The thread may be taking the entry before: then the next tick hands over a newer one.
+        // If the thread is taking the previous entry, the next tick hands over a newer one.
         let mut hand_over = |from: u64, change: fn(&mut Entry)| {
             (from..).take(5).find(|tick| {
                 let mut entry = entry(*tick);

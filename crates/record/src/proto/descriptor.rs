@@ -105,7 +105,7 @@ pub fn repeated(field: FieldDescriptorProto) -> FieldDescriptorProto {
     FieldDescriptorProto { label: Some(Label::Repeated.into()), ..field }
 }
 
-/// The field as an optional one. Messages and repeated fields need no mark: they are absent or empty if not written.
+/// The field as optional. Messages and repeated fields need no mark, because they can be absent or empty.
 #[must_use]
 pub fn optional(field: FieldDescriptorProto) -> FieldDescriptorProto {
     let absent_anyway = field.r#type() == Type::Message || field.label() == Label::Repeated;

@@ -18,7 +18,7 @@ pub trait Value {
 
     fn put(&self, number: u32, out: &mut Vec<u8>);
 
-    /// Take a value from the wire. A list is extended by it; a value of another wire type is ignored.
+    /// Take a value from the wire. A list appends it. A value of another wire type is ignored.
     fn take(&mut self, value: wire::Value<'_>);
 }
 

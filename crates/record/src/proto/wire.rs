@@ -1,6 +1,6 @@
 //! The part of the protobuf wire format that a log uses.
 //!
-//! Zero values are written too: some readers would otherwise interrupt a curve at zero.
+//! Zero values are written, too, because some readers would otherwise interrupt a curve at zero.
 
 const VARINT: u64 = 0;
 const FIXED64: u64 = 1; // wire type of eight bytes

@@ -86,7 +86,7 @@ pub struct Agent {
     exchanges: u64,
     command_id: u16, // command-id# of the last sent command; 0 before the first
     open: bool,      // true while the last command has no answer
-    /// The status in the mailbox when the command was first sent, which answers an earlier command.
+    /// Number of the status in the mailbox when the command was first sent. It answers an earlier command.
     before: u16,
     remarks: Vec<Remark>,
 }
@@ -124,7 +124,7 @@ impl Agent {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Called between commands. Checks whether a server is connected.
+    /// Checks whether a server is connected. Call it between commands.
     pub fn idle(&mut self) {
         self.exchange();
     }

@@ -1,4 +1,4 @@
-//! The exclusive right of one program to write to a database: SQLite locks a database only for a statement.
+//! The exclusive right of one program to write to a database. SQLite itself locks only for a statement.
 
 use std::{
     fs::{self, File, OpenOptions, TryLockError},
@@ -9,7 +9,7 @@ use std::{
 
 const SUFFIX: &str = "lock"; // suffix of the file that is locked, after the name of the database
 
-/// The right, until it is dropped. The system withdraws it from a program that ends in any way.
+/// Holds the right until it is dropped. The system releases it when the program ends in any way.
 #[derive(Debug)]
 pub struct Alone {
     path: PathBuf,

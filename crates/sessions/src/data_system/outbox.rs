@@ -2,7 +2,7 @@
 //!
 //! An update is stored here under a new number before it is sent, and deleted when the Data System has answered it. If
 //! the run is killed, the next run sends it with the same number, and the Data System executes it once. The journal is
-//! flushed to the disk before. File and journal have reserved space: a log may fill the disk.
+//! flushed to the disk before sending. File and journal have reserved space, because a log may fill the disk.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use rusqlite::{Connection, ErrorCode, params};
 const APPLICATION_ID: i32 = 0x5243_534F; // application ID in the file of the outbox: "RCSO"
 
 const RESERVE: u32 = 256 * 1024; // reserved bytes in the file, for some hundred updates
-/// Pages of the journal after which they are copied to the file: much less than the reserved space.
+/// Number of journal pages after which they are copied to the file. They need much less than the reserved space.
 const CHECKPOINT: u32 = 16;
 
 const TABLES: &str = "
@@ -73,7 +73,7 @@ impl Outbox {
         Ok(Self { connection, file: file.to_owned() })
     }
 
-    /// Store an update and return its number. One equal to the last stored one is a repetition and has its number.
+    /// Store an update and return its number. An update equal to the last one is a repetition and has its number.
     pub fn keep(&mut self, command: &[u8; DML]) -> Result<u16, OutboxError> {
         self.store(command).map_err(|source| failure(&self.file, source))
     }
@@ -170,7 +170,7 @@ mod tests {
         assert_eq!(outbox.pending().unwrap().len(), 1);
     }
 
-    /// The files do not grow, so a full disk does not matter.
+    /// The files do not grow, so a full disk has no effect.
     #[test]
     fn updates_are_stored_in_reserved_space() {
         let place = tempfile::tempdir().unwrap();

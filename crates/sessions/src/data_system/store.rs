@@ -23,7 +23,7 @@ use super::alone::Alone;
 const APPLICATION_ID: i32 = 0x5243_5332; // application ID in the file of the database: "RCS2"
 const VERSION: i32 = 2;
 
-/// Tables new in version 2: the controllers that connect, the last number of each, and the last command under a number.
+/// Tables that are new in version 2: the controllers with their last numbers, and the last numbered command.
 const CLIENTS: &str = "
     CREATE TABLE client (
         name TEXT PRIMARY KEY,

@@ -1,4 +1,4 @@
-//! The keeper of a Data System on a separate thread: the disk must not delay a tick.
+//! The keeper of a Data System on a separate thread, because the disk must not delay a tick.
 //!
 //! A run in fast clock waits when an answer is due, so that its ticks are the same in every run. On the 40 ms grid it
 //! uses the answer once it has arrived. At its end a run does not wait for a server in another process.
@@ -17,7 +17,7 @@ use super::{
 };
 use crate::network::StopHandle;
 
-/// Time after which a waiting run considers the server dead; it is long for a disk. An agent has its own time limit.
+/// Time after which a waiting run considers the server dead, long even for a disk. An agent has its own time limit.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Time between two checks for a server while no command is in progress.
@@ -119,7 +119,7 @@ impl Threaded {
                     }
                     Err(RecvTimeoutError::Disconnected) => return,
                 };
-                // Before the answer, so that a tick that has waited for the answer also has the remarks.
+                // The remarks precede the answer, so that a tick that has waited for the answer also has them.
                 let told = place.remarks().into_iter().all(|remark| tell.send(remark).is_ok());
                 if !told || response.is_some_and(|response| outgoing.send(response).is_err()) {
                     return;
@@ -129,8 +129,8 @@ impl Threaded {
         Self { pace, remarks, stop_handle: None, requests: Some(requests), responses, thread: Some(thread) }
     }
 
-    /// Check for a server in another process. If the run waits for answers, wait for the result: [`IDLE`] is many ticks
-    /// in fast clock.
+    /// Check for a server in another process. If the run waits for answers, wait for the result, because [`IDLE`] is
+    /// many ticks in fast clock.
     pub fn look(&self) {
         if self.pace == Pace::Poll || self.stop_handle.is_none() || !self.send(Request::Look) {
             return;
@@ -202,7 +202,7 @@ impl Drop for Threaded {
         if let Some(stop_handle) = &self.stop_handle {
             stop_handle.stop();
         }
-        // Closing the channel of requests ends the thread, which closes the database, so that it leaves no journal.
+        // Closing the channel of requests ends the thread. It closes the database, so that no journal is left.
         self.requests = None;
         let Some(thread) = self.thread.take() else { return };
         let ended = Instant::now();

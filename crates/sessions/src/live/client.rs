@@ -33,10 +33,10 @@ const IDLE: Duration = Duration::from_millis(10); // sleep of an idle thread: a 
 const PING: Duration = Duration::from_millis(500);
 /// Interval between pings of a client that operates the run. Its answers show that the operator is present.
 const PING_OPERATOR: Duration = ALIVE;
-/// Greatest age of a request. The sender of an older one no longer waits, or its connection is stalled.
+/// Greatest age of a request. The sender of an older request no longer waits, or its connection is stalled.
 const REQUEST_AGE: Duration = Duration::from_secs(2);
 const CLOSING_LIMIT: Duration = Duration::from_millis(500);
-/// Time after a disconnection during which the client can still read its reason. The feed meanwhile continues.
+/// Time after a disconnection during which the client can still read its reason, while the feed continues.
 const LATE_READER: Duration = Duration::from_secs(30);
 /// Interval between reports of the number of dropped messages.
 const COUNT: Duration = Duration::from_secs(5);
@@ -77,7 +77,7 @@ pub struct Client {
     access: Option<Access>,
     operator: Option<Operator>, // the operator session with the run; `None` before the first request
     name: Name,
-    /// Time without reading after which a client is disconnected, and the present time without reading.
+    /// Limit of the time without reading, after which the client is disconnected, and the present time without reading.
     patience: Duration,
     silence: Silence,
     notices: Option<Notices>, // receives the reason when the server disconnects the client
@@ -133,7 +133,7 @@ impl Client {
         if code != CloseCode::Away
             && let Some(notices) = &self.notices
         {
-            // A missing receiver means that nobody wants the notices.
+            // Without a receiver the notices are not needed.
             let _ = notices.send(format!("{} is disconnected: {reason}", self.name));
         }
         self.close(code, reason, limit);
@@ -278,7 +278,7 @@ impl Client {
         Ok(())
     }
 
-    /// Records the answer to a ping: the client has read everything before it.
+    /// Records the answer to a ping, which shows that the client has read everything before it.
     fn answered(&mut self, number: &[u8]) {
         let number = number.try_into().map_or(0, u64::from_le_bytes);
         if (self.pong.0..=self.ping.0).contains(&number) && number != self.pong.0 {

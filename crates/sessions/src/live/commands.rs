@@ -13,7 +13,7 @@ use std::{
 
 use serde_json::{Value, json};
 
-/// The velocity knob, as the controller reads it: 0 to 1000.
+/// The velocity knob in the controller's units, 0 to 1000.
 #[derive(Clone, Debug, Default)]
 pub struct Knob(Arc<AtomicU16>);
 

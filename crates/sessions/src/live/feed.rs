@@ -22,7 +22,7 @@ pub const QUEUE_BYTES: usize = 8 << 20;
 
 /// The past kept for clients that connect later, seconds of the run.
 pub const PAST_S: u64 = 60;
-/// Greatest number of bytes of the past. The linkbar needs a third of it. Channels keep less above it.
+/// Greatest number of bytes of the past, three times that of the linkbar. Above it, channels keep a shorter past.
 pub const PAST_BYTES: usize = 16 << 20;
 
 const NS_PER_S: u64 = 1_000_000_000;
@@ -55,7 +55,7 @@ struct Known {
 struct Past {
     messages: VecDeque<(u64, Arc<[u8]>)>, // messages with their times, ns, the oldest first
     before: Newest,                       // the newest data before these messages
-    /// True if no past is kept: the messages are differences, which are unreadable without all earlier messages.
+    /// True if no past is kept, because the messages are differences, which need all earlier messages.
     is_off: bool,
 }
 

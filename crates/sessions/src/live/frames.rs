@@ -11,7 +11,7 @@ pub const SCHEMA: &str = "foxglove.FrameTransforms";
 const LONGEST: usize = 4096; // greatest length of a transform, bytes; a longer field is not a transform
 const LINKS: usize = 4096;
 
-/// Encoded transforms, in the order of the first message of each link.
+/// Encoded transforms of the links, in the order in which the links first appeared.
 #[derive(Clone, Debug, Default)]
 pub struct Frames {
     transforms: Vec<Vec<u8>>,

@@ -1,6 +1,6 @@
 //! The first request of a connection: a browser requests the page, a viewer a WebSocket.
 //!
-//! Only `GET /` has a page. Its host name must be one of this machine, against DNS rebinding.
+//! Only `GET /` has a page. Against DNS rebinding, the host name must be one of this machine.
 
 use std::io::{Read, Write};
 
@@ -14,7 +14,7 @@ use tungstenite::{
 const LONGEST: usize = 16 * 1024; // greatest length of a request with its headers, bytes
 /// Names of this machine in the header `Host`.
 const HERE: [&str; 3] = ["127.0.0.1", "localhost", "[::1]"];
-/// Headers of every answer. They prevent frames, in which a page can be disguised.
+/// Headers of every answer. They forbid frames, in which another site could disguise the page.
 const HEADERS: &str = "Connection: close\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n\
                        Referrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n\
                        Content-Security-Policy: frame-ancestors 'none'\r\n";
@@ -27,7 +27,7 @@ pub struct First {
     pub rest: Vec<u8>,
 }
 
-/// Reads the first request of a connection. Errors: a refusal; `None` if the connection has ended.
+/// Reads the first request of a connection. The error is a refusal, or `None` if the connection has ended.
 pub fn read(stream: &mut impl Read) -> Result<First, Option<Refusal>> {
     let mut bytes = Vec::new();
     let mut part = [0; 4096];
@@ -65,7 +65,7 @@ pub fn is_upgrade(headers: &HeaderMap) -> bool {
     headers.contains_key(header::UPGRADE)
 }
 
-/// Checks a request for the page. Errors: a refusal if the address is another one, or the host is not this machine.
+/// Checks a request for the page. The error is a refusal: another address, or a host that is not this machine.
 pub fn check(request: &Request, has_page: bool) -> Result<(), Refusal> {
     if host(request.headers()).is_none() {
         let why = "this page has the name 127.0.0.1 or localhost: open it under one of them\n";
@@ -81,7 +81,7 @@ pub fn check(request: &Request, has_page: bool) -> Result<(), Refusal> {
     }
 }
 
-/// The header `Host` of a request, if it names this machine, at any port, since a tunnel may have another one.
+/// The header `Host` of a request, if it names this machine. Any port is valid, because a tunnel may use another one.
 pub fn host(headers: &HeaderMap) -> Option<&str> {
     let host = headers.get(header::HOST)?.to_str().ok()?;
     let name = match host.rsplit_once(':') {
@@ -91,7 +91,7 @@ pub fn host(headers: &HeaderMap) -> Option<&str> {
     HERE.iter().any(|here| here.eq_ignore_ascii_case(name)).then_some(host)
 }
 
-/// Answers with the page. It waits for a client that does not read only up to the time limits of `stream`.
+/// Answers with the page. The time limits of `stream` limit the wait for a client that does not read.
 pub fn send_page(stream: &mut impl Write, page: &str) {
     send(stream, StatusCode::OK, "text/html; charset=utf-8", "", page);
 }
@@ -102,7 +102,7 @@ pub fn send_refusal(stream: &mut impl Write, (status, why): &Refusal) {
 }
 
 fn send(stream: &mut impl Write, status: StatusCode, kind: &str, extra: &str, body: &str) {
-    // In one piece: some clients read the body of a refusal only if it arrives with the head.
+    // The answer is sent in one piece, because some clients read a refusal's body only if it arrives with the head.
     let answer = format!(
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{extra}{HEADERS}\r\n{body}",
         body.len()

@@ -41,7 +41,7 @@ impl FromStr for Origin {
             let place = host.chars().all(|c| c.is_ascii_alphanumeric() || ".-:[]_".contains(c));
             word && place && (!host.is_empty() || scheme == "file")
         };
-        // The address of a page ends with a slash, an origin does not.
+        // The address of a page ends with a slash, but an origin does not.
         let bare = if text.ends_with("://") { text } else { text.strip_suffix('/').unwrap_or(text) };
         match bare.split_once("://") {
             Some(parts) if legal(parts) => Ok(Self(bare.to_owned())),

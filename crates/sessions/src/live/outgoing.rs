@@ -34,7 +34,7 @@ impl Outgoing {
         self.replies.push_back(message);
     }
 
-    /// Returns false if so many replies are waiting that the client must read first.
+    /// Returns false if too many replies are waiting, so that the client must read them first.
     #[must_use]
     pub fn takes_replies(&self) -> bool {
         self.replies.len() < REPLIES

@@ -35,7 +35,7 @@ pub struct Person {
 }
 
 impl Person {
-    /// Fails if a header is missing, repeated or invalid: a connection without a role gets no rights.
+    /// Fails if a header is missing, repeated or invalid. A connection without a role gets no rights.
     pub fn of(headers: &HeaderMap) -> Result<Self, Refusal> {
         let person = header(headers, NAME).zip(header(headers, ROLE));
         let person = person.map(|(name, role)| Self { name, role });

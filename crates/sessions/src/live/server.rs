@@ -44,7 +44,7 @@ const AGAIN: Duration = Duration::from_millis(100); // pause after a connection 
 pub struct Port(TcpListener);
 
 impl Port {
-    /// Binds a port; 0 chooses a free one. Errors: the error of the operating system if the port is not available.
+    /// Binds a port; 0 chooses a free one. Fails with the error of the operating system if the port is not available.
     pub fn take(port: u16) -> io::Result<Self> {
         TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map(Self)
     }
@@ -82,7 +82,7 @@ impl Server {
         Ok(Self { address, admission, stop, thread: Some(thread), gateway: None })
     }
 
-    /// Also serves the persons for whom a gateway of this user connects at a Unix socket.
+    /// Also serves persons whose connections a gateway of this user makes at a Unix socket.
     pub fn admit_gateway(&mut self, path: &Path) -> io::Result<()> {
         let admission = self.admission.clone();
         self.gateway = Some(Acceptor::start(path, "live gateway", move |stream| admission.enter(stream))?);
@@ -143,7 +143,7 @@ struct Admission {
 }
 
 impl Admission {
-    /// Admits a gateway of this user; another one gets no answer.
+    /// Admits a gateway of this user; a gateway of another user gets no answer.
     fn enter(&self, stream: UnixStream) {
         if check_user(&stream).is_ok() {
             self.admit(Stream::Gateway(stream));
@@ -175,7 +175,7 @@ impl Drop for Open {
 
 fn refuse(mut stream: Stream) {
     let why = format!("{CLIENTS} viewers are connected: close one first\n");
-    // The answer is small and usually fits; otherwise the client gets none.
+    // The answer is small and usually fits into the socket. Otherwise the client gets none.
     if stream.set_nonblocking().is_ok() {
         http::send_refusal(&mut stream, &(StatusCode::SERVICE_UNAVAILABLE, why));
     }

@@ -20,7 +20,7 @@ pub const VELOCITY: &str = "/operator/velocity"; // the parameter for the veloci
 pub const TOKEN: &str = "/operator/token";
 /// The parameter for this client's access to the run: [`ACCESS_WORDS`].
 pub const ACCESS: &str = "/operator/access";
-/// The values of [`ACCESS`]: the run accepts no requests; requests require the token; the client has given the token.
+/// The values of [`ACCESS`]: no requests are accepted; requests require the token; the client has given the token.
 pub const ACCESS_WORDS: [&str; 3] = ["none", "token", "granted"];
 /// The parameter for the name under which the run knows the client as an operator.
 pub const NAME: &str = "/viewer/name";
@@ -77,7 +77,7 @@ impl Requests {
         matches!(self, Self::Token(_) | Self::Granted)
     }
 
-    /// Checks that the run gets requests of the client with this token.
+    /// Checks that the run accepts requests of a client with this token.
     fn check(&self, is_token: impl FnOnce(&Token) -> bool) -> Result<(), &'static str> {
         match self {
             Self::Closed => Err(NO_REQUESTS),

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// A longer gap between two checks means that this program was stopped, which is not the client's fault.
+/// A longer gap between two checks means that this program was stopped, so it is not counted as the client's silence.
 const GAP: Duration = Duration::from_millis(100);
 
 #[derive(Debug)]

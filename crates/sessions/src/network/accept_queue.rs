@@ -15,7 +15,7 @@ use std::{
 use super::shared::locked;
 
 pub(super) const SLOTS: usize = 8;
-/// Minimum time in a slot: enough for a hello, and the penalty for a wrong one.
+/// Minimum time in a slot. It is enough for a hello, and it is the penalty for a wrong hello.
 pub(super) const SAFE: Duration = Duration::from_secs(1);
 
 #[derive(Default)]
@@ -42,7 +42,7 @@ pub(super) struct Slot<'a> {
 }
 
 impl AcceptQueue {
-    /// Give a connection a slot, if necessary that of the oldest one. Returns its ticket, if a slot is free.
+    /// Give a connection a slot, if necessary the slot of the oldest connection. Returns its ticket, if a slot is free.
     pub fn enter(&self, stream: &UnixStream) -> io::Result<Option<u64>> {
         let stream = stream.try_clone()?;
         let mut inner = locked(&self.inner);

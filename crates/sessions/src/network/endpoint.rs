@@ -39,14 +39,14 @@ pub struct Endpoint {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Presence {
     pub connected: bool,
-    /// True if the neighbour has connected since the last exchange, so that its mailboxes were initialized.
+    /// True if the neighbour has connected since the last exchange. Its mailboxes were then initialized.
     pub new: bool,
-    /// True if the neighbour has been connected at some time, if only between two exchanges.
+    /// True if the neighbour has been connected at some time, even if only between two exchanges.
     pub was_connected: bool,
 }
 
 impl Endpoint {
-    /// With initialized mailboxes, not yet connected. Fails if the system has no descriptor left.
+    /// An unconnected endpoint with initialized mailboxes. Fails if the system has no descriptor left.
     pub fn new(role: Role, clock: ClockKind) -> io::Result<Self> {
         Ok(Self {
             shared: Arc::new(Shared::new(role, clock)?),
@@ -58,7 +58,7 @@ impl Endpoint {
         })
     }
 
-    /// Do not wait for the neighbour once `interrupted` is set. An exchange then uses the mailboxes that have arrived.
+    /// Stops waiting when `interrupted` is set. An exchange then uses the mailboxes that have arrived.
     #[must_use]
     pub fn until(mut self, interrupted: Arc<AtomicBool>) -> Self {
         self.interrupted = interrupted;
@@ -134,7 +134,7 @@ impl Endpoint {
         }
         let now = self.shared.session.load(Ordering::Acquire);
         if now != session && now != 0 {
-            // A session that has meanwhile begun is valid from the next tick on.
+            // A session that has begun meanwhile is used from the next tick on.
             self.incoming.iter_mut().for_each(Mailbox::initialize);
         }
         // A neighbour that has answered the pulse is treated as connected, so that a run ends in the same tick every
@@ -184,7 +184,7 @@ impl Drop for Endpoint {
     }
 }
 
-/// Stops an endpoint, even while a thread waits in it. Its neighbour is disconnected, and no other is admitted.
+/// Stops an endpoint, even while a thread waits in it. The neighbour is disconnected, and no other one is admitted.
 #[derive(Clone)]
 pub struct StopHandle {
     shared: Arc<Shared>,

@@ -6,7 +6,7 @@ use super::Role;
 pub enum Disconnect {
     Closed,
     Lost(String),
-    /// The controller has closed the connection, because no pulse was answered for this time.
+    /// The controller has closed the connection, because the neighbour has answered no pulse for this time.
     Silent(Duration),
     /// The controller has closed the connection, because the neighbour has violated the protocol in this way.
     Violation(String),

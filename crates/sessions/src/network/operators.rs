@@ -9,7 +9,7 @@ use std::{
 
 use super::NetEvent;
 
-/// Begins a session of the run over a stream. The bytes were received from the stream after the hello.
+/// Begins a session of the run over a stream. The bytes are those already received after the hello.
 type Enter = Box<dyn Fn(UnixStream, Vec<u8>) -> io::Result<()> + Send + Sync>;
 
 #[derive(Clone)]

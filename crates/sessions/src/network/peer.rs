@@ -80,7 +80,7 @@ impl Peer {
         Self::connect_within(Duration::ZERO, address, role)
     }
 
-    /// Connect, with repeated attempts for a while if no controller answers. Errors: the last [`PeerError`].
+    /// Connect, and repeat the attempt within `limit` if no controller answers. Fails with the last [`PeerError`].
     pub fn connect_within(limit: Duration, address: &Address, role: Role) -> Result<Self, PeerError> {
         let until = Instant::now() + limit;
         let (connection, clock) = loop {
@@ -98,7 +98,7 @@ impl Peer {
         self.clock
     }
 
-    /// A mailbox from the controller. Panics if it does not go to this neighbour.
+    /// A mailbox from the controller. Panics if this neighbour does not receive it.
     #[must_use]
     pub fn mailbox(&self, place: Place) -> &Mailbox {
         let mailbox = self.incoming.iter().find(|mailbox| mailbox.place() == place);

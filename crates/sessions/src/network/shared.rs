@@ -37,7 +37,7 @@ pub(super) struct Shared {
     wake: OwnedFd, // event descriptor that wakes the thread of the session
 }
 
-/// Lock a mutex, even after a panic in another thread: the data in the locks of the network are always consistent.
+/// Lock a mutex, even after a panic in another thread, because the data of the network are always consistent.
 pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -72,7 +72,7 @@ impl Shared {
 
     /// End the session, and accept no other.
     pub fn end(&self) {
-        // A tick that waits checks the flag under this lock.
+        // A waiting tick checks the flag under this lock.
         let answered = locked(&self.answered);
         self.over.store(true, Ordering::Release);
         self.changed.notify_all();
@@ -145,7 +145,7 @@ impl EndpointHandle {
             locked(mailbox).initialize();
         }
         *answered = 0;
-        // Before the session is stored: a tick that sees it waits for the answer to its own pulse.
+        // The pulse is read before the session is stored. A tick with this session waits for its own pulse.
         let pulse = self.shared.pulse.load(Ordering::Acquire);
         let number = self.shared.sessions.fetch_add(1, Ordering::AcqRel).wrapping_add(1).max(1);
         self.shared.session.store(number, Ordering::Release);
@@ -158,7 +158,7 @@ impl EndpointHandle {
     }
 
     pub(crate) fn detach(&self, why: Disconnect) {
-        // Before the change, so that a tick without a session also finds the reason.
+        // The event precedes the change, so that a tick that finds no session also finds the reason.
         self.tell(NetEvent::Disconnected(self.shared.role, why));
         let _answered = locked(&self.shared.answered);
         self.shared.session.store(0, Ordering::Release);
@@ -208,7 +208,7 @@ impl Link {
         let shared = &self.handle.shared;
         // If this fails, the thread only wakes once more than necessary.
         let _ = rustix::io::read(&shared.wake, &mut [0; 8]);
-        // The pulse first: the mailboxes, read after it, contain everything that its tick has written.
+        // The pulse is read first. The mailboxes, read after it, then contain everything that its tick has written.
         let tick = shared.pulse.load(Ordering::Acquire);
         for (mailbox, sent) in shared.outgoing.iter().zip(&mut self.sent) {
             let mailbox = locked(mailbox);

@@ -16,7 +16,7 @@ use crate::operator::{
 /// Time between two keep-alive lines, well below the time after which a run ends motion by hand.
 pub const ALIVE: Duration = Duration::from_millis(100);
 
-/// Time limit for the answer to a load, which the run gives when all boards have checked the block.
+/// Time limit for the answer to a load. The run answers when all boards have checked the block.
 const LOAD_PATIENCE: Duration = Duration::from_secs(15);
 
 #[derive(Debug, thiserror::Error)]
@@ -113,8 +113,8 @@ impl Client {
         Ok(self.number)
     }
 
-    /// Sends an empty line: the operator is present. A session that commands motion by hand must send a line at least
-    /// every [`SILENCE`](protocol::SILENCE).
+    /// Sends an empty line, which shows that the operator is present. A session that commands motion by hand must send
+    /// a line at least every [`SILENCE`](protocol::SILENCE).
     pub fn keep_alive(&mut self) -> Result<(), ClientError> {
         self.write("\n")
     }
@@ -198,7 +198,7 @@ impl Client {
                 Ok(true) => {}
                 Ok(false) => return Err(ClientError::Ended),
                 Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
-                    // Not before the greeting, since the first line is the name.
+                    // Before the greeting nothing is sent, because the first line must contain the name.
                     if !self.name.is_empty() {
                         let _ = self.keep_alive();
                     }

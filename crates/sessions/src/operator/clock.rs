@@ -49,7 +49,7 @@ fn since_boot() -> Duration {
 /// Age after which a client replaces its estimate in any case, since the two clocks drift.
 const DRIFT: Duration = Duration::from_secs(60);
 
-/// A received time, and when it was read: ahead of the run's clock at most by the drift.
+/// An estimate of the run's clock: a received time and the local time of its reading. It is fast at most by the drift.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimate {
     time: RunTime,
@@ -57,7 +57,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The run's clock showed `time` at `read`, or earlier.
+    /// An estimate from a line: the run's clock showed `time` at the moment `read` or earlier.
     #[must_use]
     pub const fn new(time: RunTime, read: Instant) -> Self {
         Self { time, read }
@@ -68,7 +68,7 @@ impl Estimate {
         self.time.after(now.saturating_duration_since(self.read))
     }
 
-    /// Takes another line into account. The estimate with the smaller delay is the later one.
+    /// Takes another line into account. Of two estimates, the one with the later time has the smaller delay.
     pub fn hear(&mut self, time: RunTime, read: Instant) {
         if time >= self.at(read) || read.saturating_duration_since(self.read) > DRIFT {
             *self = Self { time, read };

@@ -71,11 +71,11 @@ impl Given {
     }
 }
 
-/// False if the other end of a stream is closed, even while lines of it are unread.
+/// False if the other end of a stream is closed, even if some of its lines are unread.
 fn is_open(stream: &UnixStream) -> bool {
     let mut ends = [PollFd::new(stream, PollFlags::RDHUP)];
     let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
-    // An interrupted call has no result. The session reports its end itself.
+    // An interrupted call has no result. The session itself reports its end.
     let polled = poll(&mut ends, Some(&at_once));
     let [end] = ends;
     polled.is_err() || !end.revents().intersects(PollFlags::RDHUP | PollFlags::HUP | PollFlags::ERR)

@@ -23,7 +23,7 @@ pub const TEXT: usize = 224; // greatest length of a request without number and 
 pub const GREETING: &str = "rcs-operator 2"; // and the version of the protocol
 /// Longest silence of a session that commands motion by hand. After it, the motion ends.
 pub const SILENCE: Duration = Duration::from_millis(250);
-/// Time for which a client waits for an answer. The run answers between two ticks, and a second has 25.
+/// Time for which a client waits for an answer. The run answers between two ticks, of which a second has 25.
 pub const PATIENCE: Duration = Duration::from_secs(1);
 pub const LONGEST: Duration = Duration::from_secs(10); // from now to the limit of a request
 const NAME: usize = 24; // greatest length of a name, bytes
@@ -96,7 +96,7 @@ pub enum Late {
 impl Late {
     const ALL: [Self; 3] = [Self::GivenUp, Self::Ended, Self::Unlimited];
 
-    /// Beginning of the text of such a request in a log. Lines of a session cannot begin like it.
+    /// Beginning of the text of a late request in a log. No line of a session can begin with it.
     const fn mark(self) -> &'static str {
         match self {
             Self::GivenUp => "(given up) ",
@@ -316,7 +316,7 @@ impl Lines {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// Without its line feed. After an error, the rest of the stream is unreadable.
+    /// The next line without its line feed. After an error, the rest of the stream is unreadable.
     pub fn next_line(&mut self) -> Result<Option<String>, ProtocolError> {
         let end = self.bytes.iter().position(|byte| *byte == b'\n');
         if end.unwrap_or(self.bytes.len()) > LINE {

@@ -146,7 +146,7 @@ impl Sight<'_> {
         matches!(self.picture.absence(process), None | Some(Absence::Dormant | Absence::Elsewhere))
     }
 
-    /// `frame-feedback` as in IV.3.3 step 11: from the resolvers, also while the link runs.
+    /// `frame-feedback` as in IV.3.3 step 11. It is computed from the resolvers, even while the link runs.
     pub(super) fn frame_feedback(&self) -> WireFrame {
         let status = &self.picture.memory.t3i.status;
         status.resolver_frame.unwrap_or(status.frame_feedback)
@@ -183,7 +183,7 @@ impl Sight<'_> {
     }
 }
 
-/// Index of a stage in the start-up; `None` for an unknown one, which precedes all others.
+/// Index of a stage in the start-up; `None`, for an unknown stage, is less than every index.
 fn place(stage: &str) -> Option<usize> {
     STAGES.iter().position(|known| *known == stage)
 }

@@ -34,8 +34,8 @@ pub struct Step {
     pub how: &'static str,  // additional information; empty for none
     /// How the console detects that the step is done.
     pub watch: Watch,
-    /// Number of the step that ends this state. Once that step has sent its requests or is done, this one keeps its
-    /// mark.
+    /// Number of the step that ends this step's state. Once that step has sent its requests or is done, this step keeps
+    /// its mark.
     pub until: &'static str,
     /// Requests that Enter sends, in order.
     pub ask: &'static [Ask],
@@ -52,7 +52,7 @@ pub enum Watch {
     /// All conditions have held once since the step began.
     Event(&'static [Condition]),
     Said,
-    /// The operator confirms it at a real robot. A simulated cell has no such device.
+    /// With a real robot, the operator confirms the step. A simulated cell has no such device.
     Real,
 }
 

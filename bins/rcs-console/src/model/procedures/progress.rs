@@ -124,7 +124,7 @@ impl Track {
         self.begun = Begun { tick: sight.picture.tick, tool: sight.tool(), asked: None };
     }
 
-    /// Update the marks from a picture: steps get a mark if their conditions hold, and lose it otherwise.
+    /// Update the marks from a picture: a step has a mark as long as its conditions hold.
     fn look(&mut self, sight: &Sight<'_>) {
         let was = self.next();
         if was.is_some() && self.current != was && self.begun.asked.is_none() {
@@ -169,7 +169,7 @@ fn looked(step: &Step, mark: Mark, sight: &Sight<'_>, is_current: bool, is_ended
     }
 }
 
-/// True if all conditions hold; `None` if some are unknown and no other one fails.
+/// True if all conditions hold; `None` if some are unknown and none fails.
 fn all(conditions: &[super::Condition], sight: &Sight<'_>) -> Option<bool> {
     let seen: Vec<_> = conditions.iter().map(|condition| sight.holds(*condition)).collect();
     match (seen.contains(&Some(false)), seen.contains(&None)) {

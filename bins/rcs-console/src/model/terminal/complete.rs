@@ -21,7 +21,7 @@ pub struct Names {
 }
 
 impl Names {
-    /// The names in these texts, and the jobs in their directory. If the data have errors, only the blocks are known.
+    /// The names in these texts, and the jobs in their directory. If the data have errors, only the blocks have names.
     #[must_use]
     pub fn of(sources: &[Source], directory: &Path) -> Self {
         let numbers = sources.iter().flat_map(|source| blocks(0, source).0).map(|block| block.number);
@@ -108,7 +108,7 @@ fn candidates(words: &[&str], names: &Names, terminal: &[&str]) -> Vec<String> {
     };
     match *words {
         [] => {
-            // Words that are valid only in a job have another meaning as requests, or none.
+            // Some words of a job have another meaning as a request, or none.
             let station =
                 LineVerb::ALL.iter().filter(|verb| !matches!(verb, LineVerb::Wait | LineVerb::After));
             let first = REQUESTS.iter().chain(TASK_COMMANDS).chain(terminal).copied();
@@ -145,8 +145,8 @@ fn candidates(words: &[&str], names: &Names, terminal: &[&str]) -> Vec<String> {
     }
 }
 
-/// The candidates for the next field of a command (V.4.1): object, then grip, location and sector of source and
-/// destination, then location and sector of the end.
+/// The candidates for the next field of a command (V.4.1): the object; grip, location and sector of source and
+/// destination; location and sector of the end.
 fn field(fields: &[&str], names: &Names) -> Vec<String> {
     let null = || "--".to_owned();
     match fields.len() {

@@ -22,7 +22,7 @@ use taskdata::load::{
 
 use crate::rcs_console::model::{Key, Section, Text, Tone};
 
-/// Lines about a form that fit above the 16 lines of a block in the smallest terminal; the diff shows all of them.
+/// Number of remarks about a form that fit above the 16 lines of a block in the smallest terminal. The diff shows all.
 const ABOUT: usize = 2;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -97,12 +97,12 @@ impl Editor {
         })
     }
 
-    /// Insert a form. It replaces the one with the same last words, or follows the last line.
+    /// Insert a form. It replaces the form with the same last words, or follows the last line.
     pub fn with_form(mut self, form: &[String], about: Vec<String>) -> Result<Self, Refused> {
         let words = |line: &str| line.split_whitespace().rev().take(3).map(str::to_owned).collect::<Vec<_>>();
         let key = |line: &str| {
             let words = words(line);
-            // Name and compiling word; in a pose, its movetable is between them.
+            // The last words are the name and the compiling word. In a pose, the movetable is between them.
             (
                 words.first().cloned(),
                 ["-pose-", "-mtb-"].into_iter().find(|word| words.iter().any(|is| is == word)),
@@ -215,7 +215,7 @@ impl Editor {
                 let is_here = found.file() == name && found.block() == Some(self.number);
                 let line = found.line().filter(|_| is_here).and_then(|line| usize::try_from(line).ok());
                 let place = if is_here { String::new() } else { format!("{}: ", found.place()) };
-                // Warnings about other blocks existed before.
+                // Warnings about other blocks do not result from the edit.
                 (is_error || is_here).then(|| Message {
                     line,
                     is_error,
@@ -269,7 +269,7 @@ impl Editor {
             .map(|line| format!("\n{}", line.trim_end()))
             .collect();
         text.insert_str(end, &more);
-        // Backwards, so that a replacement does not move the lines still to be replaced.
+        // Replacing from the end keeps the positions of the lines still to be replaced.
         for (line, old) in self.lines.iter().zip(&block.lines).rev() {
             let start = byte(old.at.start);
             text.replace_range(start..start + byte(old.at.length), line.trim_end());

@@ -80,7 +80,7 @@ impl Library {
         self.read.get_or_insert_with(|| read_blocks_under(directory).0)
     }
 
-    /// The lines of a block, from line 0, and its file. The newest of several blocks is used.
+    /// The lines of a block, from line 0, and its file. If several blocks have the number, the newest is used.
     pub fn block(&mut self, number: BlockNumber) -> Option<(String, Vec<String>)> {
         self.sources().iter().rev().find_map(|source| {
             let (found, _) = blocks(0, source);

@@ -54,7 +54,7 @@ pub fn target(path: &str, picture: &Picture, library: &mut Library) -> Vec<Strin
     lines.unwrap_or_else(|| vec!["  this record is not in the blocks that this console has".to_owned()])
 }
 
-/// A record that changes during the run: its writer, and for Task the name of VII.1.
+/// A record that changes during the run: its writer and, for Task, its name in VII.1.
 fn changing(memory: &CommonMemory, number: u32) -> Option<Vec<String>> {
     let pose = memory.changing_pose(number)?;
     let of_task = memory.task.poses.iter().position(|record| record.number == Some(number));

@@ -39,7 +39,7 @@ static OLD: [(&[&str], &str); 12] = [
     ),
 ];
 
-/// Blocks that the manual loads for their effect, at Task's offset and at that of each board.
+/// Blocks that the manual loads for their effect. They are at Task's offset and at the offset of each board.
 static BLOCKS: [(u32, &str); 5] = [
     (28, "28 LOAD initialized a board: each process does it in its first tick (IV.2.8)"),
     (188, "188 LOAD prepared the network for the HWSC: connecting does it (IV.4.1)"),

@@ -58,7 +58,7 @@ fn recorded(board: &Board, memory: &CommonMemory) -> Option<Section> {
     Some(Section::new("recorded pose, 0.01 in", lines))
 }
 
-/// The boards and the source of commands; before the first input also the possible inputs.
+/// The boards and the source of commands. Before the first input, the possible inputs follow.
 fn about(operating: Option<&Operating>, picture: &Picture, is_used: bool) -> Vec<Text> {
     let operator = &picture.external.operator;
     let state = |board: u8| match (operator.is_stopped(board), operator.is_stopped(0)) {
@@ -102,7 +102,7 @@ fn conversation(terminal: &BoardTerminal, operating: Option<&Operating>) -> Vec<
         let numbered = operating.numbered();
         all.extend(numbered.map(|(ordinal, exchange)| ((ordinal, 0), of_request(exchange))));
     }
-    // Entries with equal keys keep their order: words without a request.
+    // Words without a request have equal keys and keep their order.
     all.sort_by_key(|(key, _)| *key);
     all.into_iter().rev().flat_map(|(_, lines)| lines).collect()
 }

@@ -72,7 +72,7 @@ impl Trial<'_, '_> {
             return;
         }
         let Some(world) = self.parent.world_after(line) else { return };
-        // A contact without command can have moved a part, and an arm without pressure sinks.
+        // The world can differ without a fault: an uncommanded contact moves a part, and an arm without pressure sinks.
         if self.monitor.worst().is_some() || !is_commanded(&self.branch) {
             return;
         }

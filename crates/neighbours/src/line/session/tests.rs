@@ -249,7 +249,7 @@ proptest! {
         prop_assert_eq!(carry(&mut controller, &mut neighbour, pieces, now), expected);
     }
 
-    /// Any bytes cause at most one error, after which no event follows, and the input does not exceed a frame.
+    /// Arbitrary bytes cause at most one error. No event follows it, and the stored input never exceeds a frame.
     #[test]
     fn arbitrary_bytes_neither_panic_nor_exhaust_memory(
         opened in any::<bool>(),

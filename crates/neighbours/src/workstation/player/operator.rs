@@ -98,7 +98,7 @@ impl Hwsc {
         self
     }
 
-    /// Where the job is, for an emulator that continues it later.
+    /// The position in the job, for an emulator that continues it later.
     #[must_use]
     pub fn place_in_job(&self) -> PlaceInJob {
         let waits = |line: &&JobLine| self.later.iter().any(|later| spoken_of(later, line));
@@ -112,8 +112,8 @@ impl Hwsc {
         }
     }
 
-    /// Makes the job wait for an operator at a place that an earlier emulator has reached, in a run that begins after
-    /// `tick`. Delayed actions of that place start with the next command.
+    /// Makes the job wait for an operator at the position of an earlier emulator, in a run that begins after `tick`.
+    /// Delayed actions of that position start with the next command.
     #[must_use]
     pub fn resumed_at(mut self, place: PlaceInJob, tick: Tick) -> Self {
         self.current =
@@ -160,7 +160,7 @@ impl Hwsc {
         self.intervention.news.take()
     }
 
-    /// Waits when the current line has ended, or before the first. Errors: [`OperatorError::Ended`].
+    /// Makes the job wait after the current line, or before the first. Errors: [`OperatorError::Ended`].
     pub fn wait_for_operator(&mut self) -> Result<(), OperatorError> {
         self.not_ended()?;
         if matches!(self.intervention.state, State::Plays) {
@@ -206,7 +206,7 @@ impl Hwsc {
     #[must_use]
     pub fn stand_alone(last: u32, time_limit: u64) -> Self {
         let mut hwsc = Self::new(Vec::new(), time_limit);
-        // Task may not yet have echoed the last command; the next has the number after it.
+        // Task may not yet have echoed the last command. The next command has the number after it.
         (hwsc.commander.number, hwsc.commander.started) = (last, true);
         hwsc.attend(true);
         hwsc.wait_without_job();

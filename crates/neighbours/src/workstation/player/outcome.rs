@@ -94,7 +94,7 @@ impl fmt::Display for Retry {
 }
 
 impl JobFailure {
-    /// The operator's action before the job can continue. `None`: not needed, or in the text of the failure.
+    /// The operator's action before the job can continue. `None` if not needed, or if the failure's text contains it.
     #[must_use]
     pub const fn remedy(&self) -> Option<&'static str> {
         match self {

@@ -25,7 +25,7 @@ pub(crate) struct TestSession {
 
 impl Drop for TestSession {
     fn drop(&mut self) {
-        // An endpoint with an open session waits for its disconnect reason.
+        // An endpoint with an open session waits until the disconnect reason is sent.
         if self.link.handle.is_connected() {
             self.link.handle.detach(Disconnect::Closed);
         }
@@ -192,7 +192,7 @@ fn disconnection_ends_the_wait_of_a_tick() {
     assert!(!endpoint.exchange(2).connected);
 }
 
-/// After an interruption it is unknown whether the neighbour would have answered: it is treated as connected.
+/// After an interruption it is unknown whether the neighbour would have answered, so it is treated as connected.
 #[test]
 fn end_of_the_run_ends_the_wait_of_a_tick() {
     let interrupted = Arc::new(AtomicBool::new(false));
