@@ -96,7 +96,7 @@ fn escaped(text: &str) -> String {
     text.replace('<', "\\<").replace('|', "\\|")
 }
 
-/// A paragraph of prose; other lines stay as they are.
+/// A paragraph of prose; other lines do not change.
 fn paragraph(text: &str) -> String {
     let own_lines = text.lines().any(|line| line.starts_with(' '));
     if own_lines { format!("```text\n{text}\n```") } else { escaped(&sentence(text)) }

@@ -1,4 +1,4 @@
-//! Zenoh's configuration, set here and nowhere else: no file can weaken it.
+//! Zenoh's configuration, which is set only here, so that no file can weaken it.
 //!
 //! The gateway is a peer at one TLS endpoint; neighbours are clients, because a client reports at once that it cannot
 //! connect, while a peer retries silently. The access control denies by default, on both sides.

@@ -71,7 +71,7 @@ impl Keys {
         name.map_or_else(|| Self::only(directory), |name| Self::load(directory, name))
     }
 
-    /// The only keys in a directory, apart from the authority's. Errors: [`KeysError::Which`] if there are more.
+    /// The only keys in a directory, apart from the authority's. Fails with [`KeysError::Which`] if there are more.
     fn only(directory: &Path) -> Result<Self, KeysError> {
         let failed = |source| KeysError::File { path: directory.to_owned(), source };
         let mut found = Vec::new();

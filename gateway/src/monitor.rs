@@ -73,7 +73,7 @@ fn change(cells: &Cells, sample: &Sample, change: impl FnOnce(&mut Cell)) {
     }
 }
 
-/// Once per second. Fails if the keys cannot be used, or the only endpoint cannot be reached.
+/// Prints the states once per second. Fails if the keys cannot be used, or the only endpoint cannot be reached.
 pub fn monitor(arguments: &MonitorArguments) -> Result<(), Error> {
     let MonitorArguments { endpoints, keys, name, count } = arguments;
     let own = Keys::named_or_only(keys, name.as_ref())?;

@@ -1,6 +1,5 @@
 //! Slows certificates whose requests the run refuses. The run keeps a refused connection for a second in one of eight
-//! places (docs/neighbours.md "Security"): a client that tries again without a pause would fill them, and keep all
-//! others out.
+//! places (docs/neighbours.md "Security"): a client that retries without a pause would fill them and block all others.
 
 use std::{
     collections::BTreeMap,

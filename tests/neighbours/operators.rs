@@ -85,7 +85,7 @@ fn operator_of_the_network_commands_and_another_name_does_not_hide_it() {
     let mut anna = Client::over(stream, &"anna".parse().expect("a name")).expect("a session");
     assert_eq!(anna.run(), cell.name.as_str());
     assert!(anna.ask("joystick velocity 900").expect("an answer").is_ok());
-    // Only one operator commands, local or remote, under any name.
+    // Only one operator can command, local or remote, under any name.
     let mut local =
         Client::connect(&operator_socket(&cell.name), &"anna".parse().expect("a name")).expect("it waits");
     let why = local.ask("joystick velocity 800").expect("an answer").expect_err("another one commands");

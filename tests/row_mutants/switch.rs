@@ -1,7 +1,7 @@
 //! All changes are compiled together; a test program selects one when it starts. Next to `pub TURN: fn turn(..)` each
 //! change adds a table, `TURN_CHANGED_17`, and `turn` consults the table whose number is in [`CHANGED`]. If
 //! [`REACHED`] names a file, no change is selected, and the numbers of those that would have decided otherwise are
-//! written to it: a test that reaches none cannot detect the change.
+//! written to it: a test that does not reach a change cannot detect it.
 
 use std::{
     collections::{BTreeMap, HashMap},
@@ -159,7 +159,7 @@ pub struct Switched {
 }
 
 impl Switched {
-    /// The files with all changes. Errors: a file cannot be read, or does not have the expected form.
+    /// The files with all changes. Fails if a file cannot be read, or does not have the expected form.
     pub fn new(root: &Path, mutants: &BTreeMap<usize, &Mutant>) -> io::Result<Self> {
         let mut switched = Self::default();
         let mut files: BTreeMap<&Path, BTreeMap<usize, &Mutant>> = BTreeMap::new();

@@ -47,7 +47,7 @@ pub struct Emulation {
 }
 
 impl Emulation {
-    /// Errors: a sentence, if the robot's file or a socket cannot be used.
+    /// Fails with a sentence if the robot's file or a socket cannot be used.
     pub fn new(target: &EgmTarget, data: &std::path::Path) -> Result<Self, String> {
         let options: &EgmOptions = &target.0;
         let Peer::Udp(host) = options.peer else { return Err("--emulate needs a port to send to".into()) };

@@ -31,7 +31,7 @@ pub struct Gateway {
 }
 
 impl Gateway {
-    /// Listens for the robot. Errors: a sentence for messages if the port or the robot's file cannot be used.
+    /// Listens for the robot. Fails with a sentence if the port or the robot's file cannot be used.
     pub fn new(
         options: &EgmOptions,
         data: &std::path::Path,

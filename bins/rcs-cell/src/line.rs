@@ -25,7 +25,7 @@ pub struct SerialLine {
 impl SerialLine {
     #[must_use]
     pub fn new(baud: u32) -> Self {
-        // Rounded up, so that the line is never too fast.
+        // The time is rounded up, so that the line is never too fast.
         let byte_us = (BITS * 1_000_000).div_ceil(u64::from(baud.max(1)));
         Self { byte_us, rx: VecDeque::new(), tx: VecDeque::new(), rx_end: 0, tx_end: 0 }
     }

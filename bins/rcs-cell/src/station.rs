@@ -103,7 +103,7 @@ impl Station {
         Ok(station)
     }
 
-    /// Runs until `quit` or a signal. Errors: a sentence for messages if the robot's socket fails.
+    /// Runs until `quit` or a signal. Fails with a sentence if the robot's socket fails.
     pub fn run(&mut self, stop: &AtomicBool) -> Result<(), String> {
         let listed: Vec<String> = self
             .couplers

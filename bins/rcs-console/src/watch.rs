@@ -25,7 +25,7 @@ pub fn load(path: &Path) -> Vec<String> {
     text.lines().map(str::trim).filter(known).map(str::to_owned).collect()
 }
 
-/// Save the list. Errors are those of the system.
+/// Save the list. Fails with the error of the system.
 pub fn save(path: &Path, list: &[String]) -> io::Result<()> {
     path.parent().map_or(Ok(()), fs::create_dir_all)?;
     let text: String = list.iter().flat_map(|name| [name.as_str(), "\n"]).collect();

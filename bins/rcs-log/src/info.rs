@@ -68,7 +68,7 @@ struct Times {
 }
 
 impl Times {
-    /// From the times of all ticks, ns; `None` if there are none.
+    /// A summary of the times of all ticks, ns; `None` if there are no times.
     fn new(mut nanoseconds: Vec<u64>, overruns: u64) -> Option<Self> {
         nanoseconds.sort_unstable();
         let last = nanoseconds.len().checked_sub(1)?;
@@ -108,7 +108,7 @@ pub fn info(arguments: &Arguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The summary of a log. Errors: [`Error::Read`] if the log cannot be read, [`Error::Empty`] without a tick.
+/// The summary of a log. Fails with [`Error::Read`] if the log cannot be read, [`Error::Empty`] without a tick.
 pub fn summary(log: &Log, path: &Path) -> Result<Info, Error> {
     let (mut command_history, mut link) = (CommandHistory::new(tables::of_log(log).0), Link::default());
     let (mut ticks, mut missing, mut last) = (0, 0, Tick::BEFORE_START);

@@ -92,7 +92,7 @@ impl Test {
             let ready = self.line.receive(&mut rx) && held;
             self.receive(&rx, ready);
             self.transmit(tick < quiet);
-            // Late ticks are not caught up: the robot would get more than one command per tick.
+            // Late ticks are not caught up, because the robot would get more than one command per tick.
             due = (due + PERIOD).max(Instant::now());
             (rx, held) = self.collect(due);
             if interrupted() {

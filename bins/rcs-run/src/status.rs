@@ -65,7 +65,7 @@ impl fmt::Display for Starting {
     }
 }
 
-/// The run in progress, if there is exactly one. Errors: [`Error::SharedMemory`], [`Error::WhichRun`].
+/// The run in progress, if there is exactly one. Fails with [`Error::SharedMemory`] or [`Error::WhichRun`].
 pub fn only_run() -> Result<RunName, Error> {
     let alive: Vec<_> = memory::list()?.into_iter().filter(|run| run.alive).map(|run| run.name).collect();
     match &alive[..] {

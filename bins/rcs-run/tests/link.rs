@@ -138,7 +138,7 @@ fn control(mut master: File, manner: Manner, stop: &AtomicBool) -> (ControllerSt
     robot.accept(&at).unwrap();
     let plugged = Instant::now();
     while plugged.elapsed() < late {
-        // The cable is not plugged in: the bytes are lost.
+        // The cable is not plugged in, so the bytes are lost.
         let _ = master.read(&mut [0; 64]);
         thread::sleep(Duration::from_millis(5));
     }
@@ -315,7 +315,7 @@ fn unplugged_port_is_reopened() {
             thread::sleep(Duration::from_millis(1500));
             first.pull();
             thread::sleep(Duration::from_millis(300));
-            // Meanwhile the arm was moved elsewhere: the old position would be a jump of 2 in, and a warning.
+            // The arm was moved meanwhile. Sending the old position would cause a jump of 2 in, and a warning.
             Peer::plug_with(&link, Manner { delay: PROMPT, raised: 200, ..Manner::default() })
         });
         let (output, tally) = link_test(&place, "6");

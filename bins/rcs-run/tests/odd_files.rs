@@ -1,4 +1,4 @@
-//! Special files, file size limits, and signals: a run is refused with a message, or ends in order.
+//! Special files, file size limits, and signals: a run is refused with a message, or ends orderly.
 
 use std::{
     fs,

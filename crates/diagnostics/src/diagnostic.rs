@@ -66,7 +66,7 @@ impl Diagnostic {
         self.problem.code
     }
 
-    /// One sentence: what was found and what was expected.
+    /// One sentence that states the found and the expected value.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.problem.message

@@ -28,7 +28,7 @@ pub struct Finding {
     pub place: String,
     /// The path of the entry in a TOML file.
     pub entry: Option<String>,
-    /// One sentence: what was found and what was expected.
+    /// One sentence that states the found and the expected value.
     pub message: String,
     /// What was expected.
     pub expected: Option<String>,

@@ -1,8 +1,8 @@
 //! Diagnostics of text files: all problems of a file, each with its place, expected and found value, and nearest name.
 //!
 //! A reader adds each problem to [`Problems`] and continues. [`Diagnostics::new`] finds the places with [`Places`] and
-//! makes a report: text with the place underlined, or a list of [`Finding`] for programs. A [`Problem`] names a piece
-//! of text ([`At`]) or an entry of TOML (`gripper.parts.body[0]`), whose place [`toml::Document`] finds.
+//! makes a report: a text with the places underlined, or a list of [`Finding`] for programs. A [`Problem`] names a
+//! piece of text ([`At`]) or an entry of TOML (`gripper.parts.body[0]`), whose place [`toml::Document`] finds.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]

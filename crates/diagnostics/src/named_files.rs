@@ -31,7 +31,7 @@ pub struct NamedFiles {
 }
 
 impl NamedFiles {
-    /// The file of that name in the data directory, else the file with that path. Errors: [`UnknownFile`].
+    /// The file of that name in the data directory, else the file with that path. Fails with [`UnknownFile`].
     pub fn find(&self, name: &Path, data: &Path) -> Result<PathBuf, UnknownFile> {
         let named = self.named(name, data);
         // A file that is not regular is accepted here, because the reader reports its kind.
@@ -39,7 +39,7 @@ impl NamedFiles {
         if is_path { Ok(name.to_owned()) } else { named }
     }
 
-    /// The file of a name in the data directory. Errors: [`UnknownFile`] if there is none.
+    /// The file of a name in the data directory. Fails with [`UnknownFile`] if there is none.
     pub fn named(&self, name: &Path, data: &Path) -> Result<PathBuf, UnknownFile> {
         let named = data.join(self.directory).join(name).with_added_extension(self.extension);
         if files::is_file(&named) {

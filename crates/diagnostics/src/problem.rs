@@ -35,7 +35,7 @@ pub struct Problem {
     pub at: Option<At>,
     /// The path of the entry in a TOML file: `gripper.parts.body[0]`; lists count from 0.
     pub entry: Option<String>,
-    /// One sentence: what was found and what was expected.
+    /// One sentence that states the found and the expected value.
     pub message: String,
     /// What to do, or the nearest known name.
     pub help: Option<String>,
@@ -77,7 +77,7 @@ impl Problem {
         Self { entry: Some(entry.to_owned()), ..Self::new(Severity::Error, code, None, message) }
     }
 
-    /// An error of a TOML entry: what was expected, and what was found.
+    /// An error of a TOML entry, from the expected and the found value.
     #[must_use]
     pub fn unlike(code: &'static str, entry: &str, expected: impl Display, found: impl Display) -> Self {
         let (expected, found) = (expected.to_string(), found.to_string());

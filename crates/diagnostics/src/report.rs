@@ -1,4 +1,4 @@
-//! The report of a load: every error and warning, each with its place, and what was loaded.
+//! The report of a load: every error and warning with its place, and the numbers of loaded files and records.
 
 use std::{fmt, io::IsTerminal};
 

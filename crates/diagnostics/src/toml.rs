@@ -2,8 +2,8 @@
 //!
 //! The structures derive serde's `Deserialize`, which stops at the first error. This deserializer reports a wrong
 //! value with its place, replaces it by one of the right type, a *stand-in*, and continues; it reports and omits an
-//! unknown key. Only the structure knows whether it needs a missing key; then reading starts again with a stand-in for
-//! it. Values read with stand-ins are never used; they allow all other entries to be checked in the same pass.
+//! unknown key. Only the structure determines whether it needs a missing key. Reading then starts again with a stand-in
+//! for the key. Values read with stand-ins are never used; they allow all other entries to be checked in the same pass.
 
 mod reader;
 

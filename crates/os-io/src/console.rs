@@ -1,4 +1,4 @@
-//! Writes lines to standard output and standard error. Nothing here panics.
+//! Writes lines to standard output and standard error. No function here panics.
 //!
 //! | for | call | if the reader has closed the pipe or the terminal | if the write fails otherwise |
 //! |---|---|---|---|
@@ -70,7 +70,7 @@ pub fn answer(text: &str) -> io::Result<()> {
     drawn(&shown(text))
 }
 
-/// Writes a report that was drawn for a terminal to standard output, as it is. Errors: see [`answer`].
+/// Writes a report that was drawn for a terminal to standard output, unchanged. Fails like [`answer`].
 pub fn drawn(report: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     let written = answered(out.write_all(report.as_bytes()).and_then(|()| out.flush()));
@@ -80,7 +80,7 @@ pub fn drawn(report: &str) -> io::Result<()> {
     written
 }
 
-/// Writes JSON to standard output, with escapes for control characters. Errors: see [`answer`].
+/// Writes JSON to standard output, with escapes for control characters. Fails like [`answer`].
 pub fn json(text: &str) -> io::Result<()> {
     drawn(&escaped_json(text))
 }

@@ -137,8 +137,8 @@ fn line_end(text: &[u8]) -> &'static str {
 }
 
 /// Replaces or creates a file. The old content stays until the new one is complete on the disk, and after an error.
-/// Errors: [`ErrorKind::InvalidInput`] for a file that is not regular or is built in; [`ErrorKind::PermissionDenied`]
-/// if the owner cannot be kept.
+/// Fails with [`ErrorKind::InvalidInput`] for a file that is not regular or is built in, and with
+/// [`ErrorKind::PermissionDenied`] if the owner cannot be kept.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if carried::inside(path).is_some() {
         let why = "the file is built into this program: write the built-in data to a directory first (`rcs-run init`)";

@@ -5,7 +5,7 @@ use std::{ffi::OsStr, os::unix::ffi::OsStrExt as _};
 use crate::text::is_control_or_mark;
 
 /// An argument as one word of a shell. Control characters, marks that reverse text, and bytes that are not text become
-/// numbers in `$'...'`, so that a terminal shows the word as it is.
+/// numbers in `$'...'`, so that a terminal shows the real word.
 #[must_use]
 pub fn word(argument: impl AsRef<OsStr>) -> String {
     let bytes = argument.as_ref().as_bytes();

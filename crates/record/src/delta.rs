@@ -1,14 +1,14 @@
 //! Images of one tick as their difference from the previous tick, field by field.
 //!
-//! In a quiet tick a few of some hundreds of fields change, most by a little. A delta names the changed fields and
-//! gives each as the difference of two numbers, all as varints with the sign in the lowest bit:
+//! In a quiet tick a few of some hundreds of fields change, most by a little. A delta lists the changed fields and the
+//! difference of each, as varints with the sign in the lowest bit:
 //!
 //! ```text
 //! count of changed fields | fields to skip before each | the differences in sequence
 //! ```
 //!
-//! The skips are stored together because they hardly differ, and compress well. Names and frames on the line are bytes:
-//! their difference is a list of runs. A full image is a delta from zeros.
+//! The skips are stored together because they hardly differ, and compress well. Names and frames on the line are bytes,
+//! whose difference is a list of runs. A full image is a delta from zeros.
 
 use rcs_core::{plain::StructSchema, reflect};
 

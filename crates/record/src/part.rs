@@ -52,7 +52,7 @@ impl Log {
 
     fn earlier(&self) -> Option<PathBuf> {
         let name = self.lines().find_map(|line| line.text.strip_prefix(EARLIER).map(str::to_owned))?;
-        // A name in a log must not lead out of the directory.
+        // A name in a log must not point outside the directory.
         let is_name = !name.is_empty() && name != ".." && !name.contains('/');
         is_name.then(|| self.path().with_file_name(name))
     }

@@ -94,7 +94,7 @@ impl Log {
         Self::from_bytes(path, bytes)
     }
 
-    /// A log from the bytes of a file; `path` names it in errors. Errors are those of [`Log::open`].
+    /// A log from the bytes of a file; `path` names it in errors. Fails like [`Log::open`].
     pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, ReadError> {
         let mut log = Self {
             path: path.to_owned(),

@@ -1,9 +1,9 @@
 //! The run's side of the log: a bounded ring buffer, and a thread that writes its entries into the file.
 //!
 //! In a tick the recorder copies three records into memory that was allocated before the first tick. In a real-time run
-//! it never waits: if the ring is full, the tick is counted as lost. In fast clock it waits instead. The writer thread
-//! ends at the first error, which [`Recorder::finish`] returns: a full disk ends the log, never the run. Start a
-//! recorder before the real-time requests, because the writer inherits the priority.
+//! the recorder never waits: if the ring is full, it counts the tick as lost. In fast clock it waits instead. The
+//! writer thread ends at the first error, which [`Recorder::finish`] returns: a full disk ends the log, never the run.
+//! Start a recorder before the real-time requests, because the writer inherits the priority.
 
 use std::{
     path::{Path, PathBuf},

@@ -179,7 +179,7 @@ impl Scene {
     }
 }
 
-/// Adding zero turns -0.0 into 0.0: a change of sign at zero is not a movement.
+/// Adding zero turns -0.0 into 0.0, because a change of sign at zero is not a movement.
 fn round(value: f64) -> f64 {
     (value * STEP).round() / STEP + 0.0
 }

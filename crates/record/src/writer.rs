@@ -15,8 +15,8 @@
 //! | `/log` | `foxglove.Log` | when there is a remark |
 //! | `/operator` | `rcs.OperatorLine` | on a request of an operator |
 //!
-//! Only `/replay` is lossless: differences, and once per second the whole images and states, where a replay can start.
-//! On the other channels a clock or a counter is not a change ([`crate::channels`]).
+//! Only `/replay` is lossless. It has differences and, once per second, the whole images and states, where a replay can
+//! start. On the other channels a clock or a counter is not a change ([`crate::channels`]).
 //!
 //! Once per second the open chunk is written out, then a chunk with the messages of that second on `/replay`: a killed
 //! run loses a second. Unchanged buffers are repeated less often, because each message costs sixteen bytes of index.

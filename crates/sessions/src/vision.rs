@@ -143,8 +143,8 @@ impl Port {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Once per tick, after E-move and the cell. `picture` returns the parts in the picture; it is called in the tick
-    /// in which the request is written.
+    /// Call it once per tick, after E-move and the cell. It calls `picture` for the parts in the picture in the tick in
+    /// which it writes the request.
     pub fn step(&mut self, tick: u64, wanted: &VisionRequest, picture: impl FnOnce() -> Vec<Part>) {
         if wanted.number != self.wanted.number {
             (self.wanted, self.written, self.waits) = (*wanted, false, false);

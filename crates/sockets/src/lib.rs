@@ -179,9 +179,9 @@ pub struct Acceptor {
 }
 
 impl Acceptor {
-    /// Replaces the dead socket of a killed process. `name` is the thread's; `admit` receives each connection. Errors:
-    /// [`io::ErrorKind::AddrInUse`] if another program listens there; [`io::ErrorKind::AlreadyExists`] if there is a
-    /// file of another kind; errors of the system.
+    /// Replaces the dead socket of a killed process. `name` is the thread's; `admit` receives each connection. Fails
+    /// with [`io::ErrorKind::AddrInUse`] if another program listens there, [`io::ErrorKind::AlreadyExists`] if there is
+    /// a file of another kind, or an error of the system.
     pub fn start(
         path: &Path,
         name: &str,

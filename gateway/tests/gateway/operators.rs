@@ -95,7 +95,7 @@ impl Operator {
     }
 }
 
-/// Without keep-alives of the operator the motion ends after 250 ms; a gateway sends none of its own.
+/// Without keep-alives of the operator the motion ends after 250 ms, because a gateway sends no keep-alives itself.
 #[test]
 fn stick_through_a_gateway_is_released_without_keep_alives() {
     let shop = Shop::new(&["op-1"]);

@@ -48,7 +48,7 @@ impl Robot {
 
     /// Presses a button: a command of `rcs-cell --emulate`.
     pub fn press(&self, button: &str) {
-        // After the end of the thread its failure is reported.
+        // If the thread has ended, its failure is reported.
         let _ = self.buttons.send(button.to_owned());
     }
 

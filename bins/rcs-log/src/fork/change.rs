@@ -140,7 +140,7 @@ impl Change {
         Box::new(Refusal { what: self.to_string(), why: why.into() })
     }
 
-    /// Applies a change of the cell description to its text; other changes leave the text as it is.
+    /// Applies a change of the cell description to its text; other changes leave the text unchanged.
     pub fn described(&self, text: &str) -> Result<String, Box<Refusal>> {
         let Self::Cell { key, value } = self else { return Ok(text.to_owned()) };
         with_value(text, key, value).map_err(|why| self.refused(why))

@@ -15,7 +15,7 @@ pub fn journal(branch: &Branch<'_>) -> Vec<u8> {
     journal::begun(&Identity::default(), Some(&entry)).0
 }
 
-/// Switch the controller on after the last tick, with a journal. Errors: [`FormatError`]; the controller stays off.
+/// Switch the controller on after the last tick, with a journal. After a [`FormatError`] the controller stays off.
 pub fn resume(branch: &mut Branch<'_>, bytes: &[u8]) -> Result<(), FormatError> {
     let read = journal::read(bytes)?;
     let now = branch.at();

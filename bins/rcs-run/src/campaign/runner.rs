@@ -83,7 +83,7 @@ impl<'a> Runner<'a> {
         Ok(known.into_iter().filter_map(|known| known.or_else(|| run.next())).collect())
     }
 
-    /// Draw and run branches, in rounds. Errors: see [`Self::run`].
+    /// Draw and run branches, in rounds. Fails like [`Self::run`].
     pub fn draw(&self, mut draw: Draw) -> Result<(Vec<Plan>, Vec<Judged>), Error> {
         let (mut plans, mut judged) = (Vec::new(), Vec::new());
         loop {

@@ -58,7 +58,7 @@ impl<'a> Frame<'a> {
         &self.bytes[ADDRESS + HEAD..]
     }
 
-    /// `None` if the frame is not a pulse. Errors: [`FrameError::Pulse`].
+    /// `None` if the frame is not a pulse. Fails with [`FrameError::Pulse`].
     pub fn as_pulse(&self) -> Result<Option<u64>, FrameError> {
         if self.address() != PULSE {
             return Ok(None);

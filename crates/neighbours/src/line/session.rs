@@ -332,7 +332,7 @@ impl Session {
         }
     }
 
-    /// Closes the session after a silence. Errors: [`SessionError::NoHello`] or [`SessionError::Silent`], once.
+    /// Closes the session after a silence. Fails once, with [`SessionError::NoHello`] or [`SessionError::Silent`].
     pub fn check_time(&mut self, now: Instant) -> Result<(), SessionError> {
         match self.limit() {
             Some((since, limit, error)) if now.saturating_duration_since(since) >= limit => {

@@ -8,8 +8,8 @@
 //!
 //! A step is a tick of the controller: the pedestal runs once per received pulse, with its own cycle count. When it
 //! connects, it adopts the number of the command in the mailbox without executing it (IX.1: numbers are synchronized),
-//! and reports *restarted* for it: the command may have been abandoned while the connection was down. A newly started
-//! pedestal distinguishes two cases by the number:
+//! and reports *restarted* for it, because the command may have been abandoned while the connection was down. A newly
+//! started pedestal distinguishes two cases by the number:
 //!
 //! | command number | meaning                                   | hand and table                                            |
 //! |----------------|-------------------------------------------|-----------------------------------------------------------|

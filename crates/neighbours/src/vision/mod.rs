@@ -1,6 +1,6 @@
 //! The NBS vision system and E-move (IX.4, V.2.1 LOCATE-OBJ).
 //!
-//! Vision has a parallel interface, used like a slightly modified mailbox: request and response area, their
+//! Vision has a parallel interface, used like a slightly modified mailbox. It has a request and a response area, their
 //! byte-counts, and two words that permit their use. Figure IX.3, with addresses and sizes, is lost. CHOSEN: two
 //! mailboxes, one per direction, so that each has one writer.
 //!

@@ -10,7 +10,7 @@
 //! | the one after the last                    | accepted                                                             |
 //! | any other                                 | refused; accepted as the first since the mailboxes were initialized  |
 //!
-//! An accepted command is checked against the task data ([`Judge`]). One that fails goes to Task with that verdict,
+//! An accepted command is checked against the task data ([`Judge`]). A failed command goes to Task with that verdict,
 //! and Task refuses it: the status echoes its number with `error` and the reason. A workstation controller that
 //! (re)connects reads `command-#-echo` and continues after it (IX.1).
 

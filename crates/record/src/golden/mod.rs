@@ -2,7 +2,7 @@
 //!
 //! A golden has the inputs of the ladder as one column per field, the task data, and the digest of all output buffers
 //! after each second. Its replay finds the second in which the present program first differs, and writes a [`Summary`]
-//! as text for review.
+//! as a text for review.
 //!
 //! ```text
 //!  run --log--> golden::from_log --> NAME.golden, NAME.txt    once, by a command

@@ -1,8 +1,8 @@
 //! The summary of a run as text for review: commands with their durations, failures, and the number of firings
 //! of each row of each decision table.
 //!
-//! A digest only detects a change of behaviour. The summary makes it readable: a row that fires less often, a
-//! command that takes longer, a new failure.
+//! A digest only detects a change of behaviour. The summary shows the change: a row that fires less often, a command
+//! that takes longer, a new failure.
 
 use std::{collections::BTreeMap, fmt::Write as _};
 

@@ -6,8 +6,8 @@
 //! ...
 //! ```
 //!
-//! All numbers are little-endian. The hash of a slot includes that of the head, so that a slot of another journal does
-//! not pass. Entry `n` is in slot `n mod slots`: a write that is cut off damages one slot, and the entries before it
+//! All numbers are little-endian. The hash of a slot includes that of the head, so that a slot of another journal is
+//! invalid. Entry `n` is in slot `n mod slots`: an interrupted write damages only one slot, so the earlier entries
 //! stay.
 
 use std::collections::BTreeMap;

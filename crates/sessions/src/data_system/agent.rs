@@ -12,8 +12,8 @@
 //! | the same, because it has no answer yet   | the same        | one to any of its repetitions: they are one command |
 //! | the same, because Task commands it again | the next number | one with this number: repeated answers are ignored  |
 //!
-//! A server that does not answer within the time limit, or not with a valid status, is silent: Task receives no answer,
-//! and repeats the command (V.4.1).
+//! A server without a valid status within the time limit is treated as silent: Task receives no answer, and repeats the
+//! command (V.4.1).
 
 use std::{
     fmt, thread,

@@ -186,7 +186,7 @@ impl Store {
         Ok(Self { connection, _alone: None })
     }
 
-    /// The places where the item with a number has been, the oldest first. Errors are those of SQLite.
+    /// The past places of the item with a number, the oldest first. Fails with an error of SQLite.
     pub fn history(&self, number: &str) -> rusqlite::Result<Vec<Visit>> {
         let read = |row: &Row<'_>| {
             Ok(Visit { at: row.get(0)?, client: row.get(1)?, position: row.get(2)?, sector: row.get(3)? })

@@ -84,7 +84,7 @@ impl Connection {
         self.stream.set_nonblocking()
     }
 
-    /// Returns true if a write has succeeded after a blocked one since the last call: the client has read.
+    /// Returns true if, since the last call, a write has succeeded after a blocked one, because the client has read.
     pub fn has_drained(&mut self) -> bool {
         mem::take(&mut self.has_drained)
     }

@@ -12,8 +12,8 @@
 //! * [`person`]: a person on the network, for whom the gateway connects;
 //! * [`server`]: listens on this machine, with one thread per client.
 //!
-//! The run never waits for a client. A full queue drops its oldest messages and counts them. A client that does
-//! not read for five seconds is disconnected, with the reason; one that reads slowly stays.
+//! The run never waits for a client. A full queue drops its oldest messages and counts them. A client that does not
+//! read for five seconds is disconnected with the reason. A client that reads slowly stays connected.
 
 #![cfg_attr(
     not(test),

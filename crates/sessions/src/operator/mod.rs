@@ -5,7 +5,7 @@
 //!                     ◄──────────── answer, without waiting ────────────┘
 //! ```
 //!
-//! The run defines the meaning of the lines.
+//! The run determines the meaning of the lines.
 
 mod client;
 pub mod clock;

@@ -66,7 +66,7 @@ pub struct Editor {
 pub type Refused = String;
 
 impl Editor {
-    /// Open a block of the files under a directory, whose texts are given. Errors: a message with the reason.
+    /// Open a block of the files under a directory; `sources` are their texts. Fails with the reason as a message.
     pub fn begin(number: BlockNumber, directory: &Path, sources: &[Source]) -> Result<Self, Refused> {
         let holds = |source: &Source| blocks(0, source).0.iter().any(|block| block.number == number);
         let at = sources.iter().rposition(holds).ok_or_else(|| format!("there is no {number}"))?;
@@ -230,7 +230,7 @@ impl Editor {
         EditorRequest::None
     }
 
-    /// Write the block into the file. Errors: a message with the reason. The file is then unchanged.
+    /// Write the block into the file. Fails with the reason as a message; the file is then unchanged.
     pub fn write(&self) -> Result<(), String> {
         let told = |error: io::Error| format!("{}: {error}", self.path.display());
         if fs::read_to_string(&self.path).map_err(told)? != self.before {

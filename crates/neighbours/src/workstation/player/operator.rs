@@ -160,7 +160,7 @@ impl Hwsc {
         self.intervention.news.take()
     }
 
-    /// Makes the job wait after the current line, or before the first. Errors: [`OperatorError::Ended`].
+    /// Makes the job wait after the current line, or before the first. Fails with [`OperatorError::Ended`].
     pub fn wait_for_operator(&mut self) -> Result<(), OperatorError> {
         self.not_ended()?;
         if matches!(self.intervention.state, State::Plays) {
@@ -222,7 +222,7 @@ impl Hwsc {
         self.intervention.state = State::Waits { failure: None, before_line: true, command: None };
     }
 
-    /// The job waits from now on. Errors: [`OperatorError::Ended`].
+    /// The job waits from now on. Fails with [`OperatorError::Ended`].
     pub fn command_by_operator(
         &mut self,
         tick: Tick,

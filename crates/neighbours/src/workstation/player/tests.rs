@@ -269,7 +269,7 @@ fn failed_command_is_repeated_after_a_pause() {
     assert_eq!(outcomes, [finished, failed, finished, finished, finished]);
 }
 
-/// A failed PAUSE does not prevent the retry: the command itself shows whether it can be executed.
+/// A failed PAUSE does not prevent the retry, because the command itself shows whether it can be executed.
 #[test]
 fn retries_are_counted_per_line() {
     let received = |failing: usize| {
