@@ -174,7 +174,7 @@ fn reached(tick: u64) -> impl Fn(&Attached) -> bool {
     move |reader| reader.pulse().is_ok_and(|pulse| pulse.tick.0 >= tick)
 }
 
-/// Sends a board a signal at a moment. The end of the run must meet a condition.
+/// Sends a signal to a board at a certain moment. The end of the run must meet a condition.
 fn strike(
     bench: &Bench,
     (board, signal): (u8, Signal),

@@ -97,7 +97,7 @@ impl Viewer {
         }
     }
 
-    /// The next reply. The operators' channel starts with the first one.
+    /// The next reply. The operators' channel starts with the first reply.
     fn answer(&mut self) -> Value {
         std::iter::repeat_with(|| self.text()).find(|text| text["op"] != "advertise").unwrap()
     }

@@ -1,7 +1,7 @@
 //! `--emulate egm:[ADDRESS:]PORT[,OPTION...]`: an EGM robot that sends to a host over UDP.
 //!
-//! One thread, which sleeps until the next cycle of 4.032 ms or until a datagram arrives. Network faults can be
-//! simulated, random with a seed. Lines of standard input operate buttons and programs, as at the T3's console.
+//! Its thread sleeps until the next cycle of 4.032 ms or until a datagram arrives. It can simulate random network
+//! faults from a seed. Lines of standard input operate buttons and programs, as at the T3's console.
 
 use std::{
     io::{self, BufRead as _},

@@ -312,7 +312,7 @@ impl Session {
     }
 }
 
-/// The log of a run: the named one, or that of its job in `runs/`. It must contain the last tick of the run, bit for
+/// The log of a run: the named log, or the log of its job in `runs/`. It must contain the last tick of the run, bit for
 /// bit.
 fn log_of(source: &dyn Source, named: Option<&Path>) -> Result<Recorded, String> {
     let about = source.about();

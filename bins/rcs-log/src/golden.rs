@@ -1,4 +1,4 @@
-//! `rcs-log golden`: converts logs of whole runs to small files that tests replay, each with a text for review.
+//! `rcs-log golden`: converts logs of whole runs to small files for replay in tests, each with a text for review.
 
 use std::{
     fmt, fs,

@@ -72,7 +72,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// The exit status. A stop by the user has the same status as after the first tick.
+    /// The exit status. A stop by the user before the first tick has the same status as a later stop.
     #[must_use]
     pub const fn status(&self) -> u8 {
         match self {

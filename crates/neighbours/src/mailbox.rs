@@ -85,7 +85,7 @@ pub struct Mailbox {
     bytes: [u8; MAX_SIZE], // zero after the size of the mailbox
 }
 
-/// Most mailboxes are small and copied in every tick: `clone_from` copies only the used bytes.
+/// Most contents are short, and mailboxes are copied in every tick, so `clone_from` copies only the used bytes.
 impl Clone for Mailbox {
     fn clone(&self) -> Self {
         Self { place: self.place, bytes: self.bytes }

@@ -39,7 +39,7 @@ fn records(mut block: &[u8]) -> Vec<(u8, Vec<u8>)> {
     found
 }
 
-/// The text with its length at a place, and the place after it.
+/// The text at a place, where its length precedes it, and the place after the text.
 fn text(body: &[u8], at: usize) -> (String, usize) {
     let size = u32::from_le_bytes(body[at..at + 4].try_into().unwrap()) as usize;
     let end = at + 4 + size;

@@ -1,6 +1,6 @@
 //! The lossless channel, `/replay`: byte images of inputs and outputs of every tick, as differences.
 //!
-//! Its messages are kept until their second is over.
+//! The messages are buffered until the end of their second.
 
 use std::io::{Seek, Write};
 

@@ -61,7 +61,7 @@ impl OperatorLine {
     }
 }
 
-/// The channel, from the first line on.
+/// The channel, which exists from the first line on.
 #[derive(Default)]
 pub(crate) struct OperatorChannel(Option<u16>);
 

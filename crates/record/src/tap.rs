@@ -3,7 +3,7 @@
 pub trait Tap: Send {
     fn channel(&mut self, id: u16, channel: &Channel<'_>);
 
-    /// A message of a channel, with its time in nanoseconds since 1970.
+    /// A message of a channel, and its time in nanoseconds since 1970.
     fn message(&mut self, channel: u16, time: u64, data: &[u8]);
 
     /// All messages of a tick, possibly none, have been written. `time` is as above.

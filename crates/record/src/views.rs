@@ -81,13 +81,13 @@ messages! {
     Commander {
         /// `job`, `operator`, or `workstation controller`.
         source: Cow<'static, str>,
-        /// Name of the operator in command, whose requests alone are accepted, except stops; empty for none.
+        /// Name of the operator in command; empty for none. Other operators may only stop the robot.
         operator: String,
         /// Names of the connected operators.
         connected: Vec<String>,
         /// An operator has stopped the robot: the velocity knob is at 0 until `go`.
         is_stopped: bool,
-        /// The joystick box has the robot.
+        /// The joystick box controls the robot.
         by_hand: bool,
     }
 

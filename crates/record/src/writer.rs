@@ -49,9 +49,9 @@ use crate::{
     views::{View, Views},
 };
 
-/// Ticks from one set of whole images, and of states, to the next: a second.
+/// Ticks between two sets of whole images and states: a second.
 pub const FULL_SET: u64 = 25;
-/// Full sets from one repetition of all buffers for people to the next: ten seconds.
+/// Number of full sets between two repetitions of all buffers for viewers: ten seconds.
 const REPETITION: u64 = 10;
 /// Uncompressed size at which a chunk is closed early, bytes: three times a second of a moving cell.
 const CHUNK: u64 = 256 * 1024;

@@ -1,4 +1,4 @@
-//! Limits on strangers: connections that have not shown a login, and tries to log in, per address and in total.
+//! Limits per address and in total: on connections without a login, and on attempts to log in.
 
 use std::{
     collections::BTreeMap,

@@ -245,7 +245,7 @@ fn stopped(scene: &Scene<'_>) -> Option<Finding> {
     }
 }
 
-/// The devices behind field I/O that are not fresh, as text; `None` if all are.
+/// The devices behind field I/O without fresh values, as text; `None` if all values are fresh.
 #[must_use]
 pub fn late_devices(field: &FieldHealth) -> Option<String> {
     if field.any == GroupHealth::Fresh {

@@ -306,7 +306,7 @@ impl Drawing {
             let place = sheet.place(side.of(point));
             sheet.put(place, sign, true);
         }
-        // Names of small bodies go first: they have fewer possible positions.
+        // Names of small bodies are placed first, because they have fewer possible positions.
         placed.sort_by_key(|(_, low, high)| (high.0 - low.0) * (low.1 - high.1));
         for (name, low, high) in placed {
             sheet.label(name, low, high);

@@ -249,7 +249,7 @@ impl Model {
         }
     }
 
-    /// Update the procedures from a picture, but only from a picture of the present.
+    /// Update the procedures from a picture, unless it is one of the past.
     fn look_at_procedures(&mut self, source: &dyn Source) {
         if let (Some(picture), Place::Last) = (&self.picture, self.place) {
             let cell = source.cell(picture.tick.0);

@@ -124,7 +124,7 @@ fn at(section: &Section, width: usize) -> usize {
     section.lines.iter().take(section.at).map(|line| wrap(&line.text, width).len()).sum()
 }
 
-/// The first visible line, if the default position of the pane shows a certain line.
+/// The first visible line of a pane whose default position shows the line `at`.
 fn scrolled(at: usize, scroll: isize, length: usize, height: usize, reach: &mut Reach) -> usize {
     let most = length.saturating_sub(height).max(at);
     *reach = Reach { up: at, down: most - at };

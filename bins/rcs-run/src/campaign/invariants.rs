@@ -22,11 +22,11 @@ use rcs_core::tick::TICK_S;
 
 use super::branch::Branch;
 
-/// Ticks for which E-move may be wrong about the held object: 5 s, longer than the travel of the fingers.
+/// Ticks for which E-move may be wrong about the held object: 5 s. The fingers need less time for their travel.
 const CORRECTION_TICKS: u32 = 125;
 /// Longest step from a point to the next, in: 14 in/s (A 2.3) for a tick, and the rounding of two points.
 const STEP_INCHES: f64 = LINK_VELOCITY * TICK_S + 0.02;
-/// The same for 1 rad/s, radians.
+/// Longest rotation from a point to the next, at 1 rad/s, radians.
 const STEP_RADIANS: f64 = LINK_VELOCITY / INCHES_PER_RADIAN * TICK_S + 0.002;
 
 #[derive(Clone, Debug)]
@@ -64,7 +64,7 @@ impl Invariants {
     }
 }
 
-/// True if a point of Prim is too far from the `last` one, which it replaces.
+/// True if a point of Prim is too far from the `last` point, which it replaces.
 fn steps_too_far(last: &mut Option<WireFrame>, sent: &T3iCommand) -> bool {
     match sent.command {
         T3iVerb::Point => {}

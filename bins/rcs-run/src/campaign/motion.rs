@@ -5,9 +5,9 @@ use rcs_core::tick::Tick;
 
 use super::{branch::Branch, verdict::Verdict};
 
-/// Ticks without motion after which everything is at rest: 12 s, longer than the controller waits between motions.
+/// Ticks without motion after which all devices are at rest: 12 s. The controller never waits so long between motions.
 const STILL: u64 = 300;
-/// Ticks within which everything must come to rest: five minutes, the time limit of a command.
+/// Ticks within which all devices must come to rest: five minutes, the time limit of a command.
 const LIMIT: u64 = 7500;
 /// Motion per tick below which a joint is at rest, radians.
 const ANGLE: f64 = 2e-6;

@@ -78,7 +78,7 @@ impl Draw {
         (0..left.min(ROUND)).map_while(|_| self.next()).collect()
     }
 
-    /// Take in the coverage of a branch of the last round. Call it for all of them, in order.
+    /// Add the coverage of a branch of the last round. Call it for all branches of the round, in order.
     pub fn learn(&mut self, plan: &Plan, coverage: Coverage) {
         let (rows, states) = self.met.take_in(coverage).counts();
         let weight = (ROW * rows + states).min(MOST);

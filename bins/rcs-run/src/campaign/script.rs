@@ -29,7 +29,7 @@ const KEY_TICKS: u64 = 2000;
 /// Ticks from CYCLE START to the DEPC function: the program makes two short motions.
 const REHEARSAL: u64 = 75;
 pub const FAULT: u64 = 20; // ticks for which a fault is on
-/// Least probability of a random fault, millionths per tick or byte, so that it occurs within [`FAULT`] ticks.
+/// Least probability of a random fault, in millionths per tick or byte. With it a fault occurs within [`FAULT`] ticks.
 const CHANCE: u32 = 50_000;
 
 pub const fn at_box(action: BoxAction) -> ScriptStep {

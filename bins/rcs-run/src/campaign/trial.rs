@@ -258,7 +258,7 @@ impl Trial<'_, '_> {
         Some(remedy)
     }
 
-    /// True if the state may be a known one. A branch without interruption runs to its end.
+    /// True if the state may be compared with known states. A branch without interruption runs to its end.
     fn is_comparable(&self) -> bool {
         let was_interrupted = *self.kind() != Kind::None && self.next().is_none();
         let has_next = self.following && self.motion.is_none();

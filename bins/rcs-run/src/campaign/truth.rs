@@ -32,7 +32,7 @@ const OF_JOB: u32 = 75; // percentage of the parts and places that are those of 
 
 struct Choice {
     kinds: [Vec<String>; 2], // kinds of parts of the job, and all of the cell
-    /// Places of parts: kind, location, sector; those of the job, and all of the cell.
+    /// Places of parts as kind, location and sector: first those of the job, then all of the cell.
     places: [Vec<(String, String, u16)>; 2],
 }
 

@@ -20,7 +20,7 @@ const LOST_USABLE: f64 = 0.01;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// At least 0.95 of the frames in time and at most 0.005 lost, and the port was there all the time.
+    /// At least 0.95 of the frames in time and at most 0.005 lost, and the port never disappeared.
     Good,
     /// At least 0.90 of the frames in time, and at most 0.01 lost.
     Usable,

@@ -17,7 +17,7 @@ use super::entered::Entered;
 use crate::rcs_run::error::Error;
 
 pub struct Family {
-    /// From the blank to the finished part, in the order of the job.
+    /// The parts from the blank to the finished part, in the order of the job.
     pub parts: Vec<PartType>,
     pub stem: String,
     /// For a tool: the other tools of the job.

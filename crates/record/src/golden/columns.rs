@@ -1,7 +1,7 @@
 //! Images of many ticks as columns: one column per field.
 //!
 //! A column is a list of changes: ticks since the previous change, and the difference (or, for names and frames, the
-//! new bytes). The noise of a converter is two small bytes per change, which compress to a few bits.
+//! new bytes). The noise of a converter takes two small bytes per change, which compress to a few bits.
 
 use rcs_core::{plain::StructSchema, reflect};
 

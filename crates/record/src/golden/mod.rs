@@ -102,7 +102,7 @@ pub enum GoldenError {
 #[derive(Clone, Debug)]
 pub struct Played {
     pub ticks: u64,
-    /// First and last tick of the first second in which the output buffers differed, if they did.
+    /// First and last tick of the first second with different output buffers, if any.
     pub difference: Option<(u64, u64)>,
     pub digest: Digest,
     pub summary: String,

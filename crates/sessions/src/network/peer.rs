@@ -35,7 +35,7 @@ pub enum PeerError {
 }
 
 impl PeerError {
-    /// True if a later attempt may succeed: the controller is missing, or has just ended.
+    /// True if a later attempt may succeed, because the controller is missing or has just ended.
     #[must_use]
     pub fn is_passing(&self) -> bool {
         match self {

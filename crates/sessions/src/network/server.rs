@@ -80,7 +80,7 @@ impl Server {
                 }
             }
             Err(why) => {
-                // Send the reason, unless the session is already closed.
+                // Send the reason unless the session is already closed.
                 connection.session.close(&why);
                 connection.finish();
                 self.refused(why);

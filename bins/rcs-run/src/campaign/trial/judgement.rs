@@ -22,7 +22,7 @@ use super::{
     Observer, Trial, Until,
 };
 
-/// Ticks for which a branch continues after a commanded point has done damage: 2 s.
+/// Ticks for which a branch continues after damage by a commanded point: 2 s.
 const AFTERMATH: u64 = 50;
 /// Ticks for which a branch continues after a false confirmation, which the processes above pass on.
 const PASSED_ON: u64 = 12;

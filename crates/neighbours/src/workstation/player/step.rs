@@ -32,7 +32,7 @@ impl Hwsc {
         self.send(tick, PAUSE.to_owned(), pause());
     }
 
-    /// Begins the current step; after the last one the job is over.
+    /// Begins the current step. After the last step the job is over.
     pub(super) fn begin(&mut self, tick: Tick, workstation: &mut impl Workstation) {
         self.began = Some(tick);
         self.pausing = false;

@@ -189,7 +189,7 @@ fn job_is_played_in_order_after_a_pause() {
             ("== MOVE", true, finished)
         ]
     );
-    // Written in one tick, read in the next, executed for four; the end is detected in the tick that writes it.
+    // A command is written in one tick, read in the next, and executed for four. The end is detected in its last tick.
     assert!(
         hwsc.begun_steps().iter().filter(|r| r.is_command).all(|r| r.ticks == 5),
         "{:?}",
