@@ -138,7 +138,7 @@ ACCEPT: it must not be dark.
 
 State variables:
 
-- `lamp`: The lamp when the command came.
+- `lamp`: The lamp when the command arrived.
   - `Off`: It is off.
   - `On`: It is on.
 
