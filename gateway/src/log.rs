@@ -43,11 +43,13 @@ pub fn write(source: Source, text: &dyn fmt::Display) {
     }
 }
 
+/// Writes a line of the gateway itself.
 #[macro_export]
 macro_rules! say {
     ($($text:tt)*) => { $crate::log::write($crate::log::Source::Gateway, &::std::format_args!($($text)*)) };
 }
 
+/// Writes a line about a refused client.
 #[macro_export]
 macro_rules! say_refused {
     ($($text:tt)*) => { $crate::log::write($crate::log::Source::Refused, &::std::format_args!($($text)*)) };

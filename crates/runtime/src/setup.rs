@@ -147,7 +147,7 @@ impl Setup {
             Some(mapping) => {
                 let devices = devices::simulated(&mapping, &description).map_err(FieldError::from)?;
                 let field = SimulatedField::new(Arc::new(mapping), &cell.inputs())?;
-                Some(Couplers::Simulated(field.with_devices(devices, &cell)))
+                Some(Couplers::Simulated(Box::new(field.with_devices(devices, &cell))))
             }
             None => None,
         };
@@ -189,7 +189,7 @@ impl Setup {
 }
 
 pub enum Couplers {
-    Simulated(SimulatedField),
+    Simulated(Box<SimulatedField>),
     Tcp(FieldPort), // couplers over TCP, which may not be ready yet
 }
 
@@ -202,7 +202,7 @@ impl Couplers {
         observer: &mut dyn Observer,
     ) -> Result<(Field, Option<FieldPort>), StartError> {
         match self {
-            Self::Simulated(field) => Ok((Field::Simulated(field), None)),
+            Self::Simulated(field) => Ok((Field::Simulated(*field), None)),
             Self::Tcp(mut port) => {
                 let desk = port.gather(config, job, observer)?;
                 Ok((Field::External(desk), Some(port)))

@@ -119,8 +119,8 @@ fn run_reads_the_devices_and_ends_with_confirmed_safe_outputs() {
     assert!(field.devices.iter().all(|device| device.confirmed && device.exchanges > 40), "{field}");
     assert_eq!(outcome.result.allocations_after_start, Some(0));
     assert!(outcome.result.parts.is_empty() && outcome.result.truth.is_none(), "nobody judges the parts");
-    for device in 0..DEVICES.len() {
-        assert_eq!(couplers.outputs_of(device), 0, "{}", DEVICES[device].0);
+    for (device, (name, ..)) in DEVICES.iter().enumerate() {
+        assert_eq!(couplers.outputs_of(device), 0, "{name}");
     }
     drop(couplers.stations);
     let report = record::replay(&couplers.directory.path().join("run.mcap")).unwrap();
