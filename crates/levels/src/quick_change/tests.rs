@@ -277,7 +277,7 @@ fn ring_position_is_published_in_every_tick() {
         }
         verb.into_iter().for_each(|verb| bench.send(verb));
     }
-    // After PAUSE at a half unlocked ring, the report lags, but the position does not.
+    // PAUSE stops the ring between its ends. The status still reports the old state; `ring` has the present one.
     let mut bench = Bench::at(1.0);
     bench.step();
     bench.send(QuickChangeVerb::Unlock);

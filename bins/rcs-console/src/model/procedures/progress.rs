@@ -110,7 +110,7 @@ impl Track {
         }
     }
 
-    /// The requests of the step at the cursor; `last` is the number of the last request before them.
+    /// Begins the step at the cursor and returns its requests. `last` is the number of the request sent before them.
     pub fn ask(&mut self, sight: &Sight<'_>, last: u32) -> Vec<String> {
         let Some(step) = self.step() else { return Vec::new() };
         self.begin(self.cursor, sight);
