@@ -85,7 +85,7 @@ pub struct PageArguments {
     pub people: PathBuf,
 }
 
-/// What is done with the file of persons.
+/// Changes the file of persons, or lists it.
 #[derive(Clone, Debug, Subcommand)]
 pub enum PersonCommand {
     /// Add a person, and print the secret once

@@ -88,7 +88,9 @@ fn a_killed_run_is_resumed_from_its_journal() {
         let mut run = Running::start(&directory, "linkbar", &resume);
         drop(run.attach());
         let go = ["send", "--run", run.name.as_str(), "resume", "job go"];
-        wait_for("the job goes on", || rcs(&directory, &go).output().is_ok_and(|sent| sent.status.success()));
+        wait_for("the job continues", || {
+            rcs(&directory, &go).output().is_ok_and(|sent| sent.status.success())
+        });
         let ended = run.end();
         assert_eq!(ended.status, Some(0), "killed after {tick}: {}", ended.last_words());
     }

@@ -60,7 +60,8 @@ pub struct Cli {
     pub station: Option<PathBuf>,
     /// The robot of the station: an EGM robot that sends to this UDP port: PORT or ADDRESS:PORT, then options after
     /// commas as for --emulate
-    #[arg(long, value_name = "PORT", requires = "station", conflicts_with_all = ["link", "emulate"], value_parser = EgmOptions::to_emulate)]
+    #[arg(long, value_name = "PORT", requires = "station", conflicts_with_all = ["link", "emulate"])]
+    #[arg(value_parser = EgmOptions::to_emulate)]
     pub egm_robot: Option<EgmOptions>,
     /// The camera of the station is the neighbour `vision` of a run: unix:PATH of its --network
     #[arg(long, value_name = "ADDRESS", requires = "station", conflicts_with_all = ["link", "emulate"])]

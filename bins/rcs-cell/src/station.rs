@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   rcs-run ──Modbus TCP──► a server per device of the mapping ──┐ every 40 ms: outputs to the cell,
-//!           ──EGM (UDP)───► robot, in its own thread ────────────┤ a tick of the cell, sensors to the registers
+//!           ──EGM (UDP)───► robot, in its own thread ────────────┤ cell's tick, sensors to registers
 //!           ──vision──────► camera, in its own thread ───────────┘
 //! ```
 //!

@@ -5,7 +5,7 @@ use std::{
     io::{Read as _, Write as _},
     net::{Ipv4Addr, SocketAddr},
     path::PathBuf,
-    process::{Output, Stdio},
+    process::{Child, Output, Stdio},
 };
 
 use couplers::{Emulated, Kind};
@@ -18,6 +18,11 @@ use crate::common::{command, root};
 const ADDRESSES: [&str; 3] = ["127.0.0.1:21502", "127.0.0.1:21503", "127.0.0.1:21504"];
 const ARM: usize = 0;
 const SUPPLY: u16 = 1 << 7; // `grip.supply` in the first output word of the arm
+
+fn start(arguments: &[&str]) -> Child {
+    let pipes = || Stdio::piped();
+    command(arguments).stdin(pipes()).stdout(pipes()).stderr(pipes()).spawn().unwrap()
+}
 
 /// Three couplers, and the shipped mapping with their addresses.
 struct Cell {
@@ -51,12 +56,7 @@ impl Cell {
         let path = self.mapping();
         let mut arguments = vec![words[0], path.to_str().unwrap()];
         arguments.extend(&words[1..]);
-        let mut child = command(&arguments)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut child = start(&arguments);
         child.stdin.take().unwrap().write_all(answers.as_bytes()).unwrap();
         child.wait_with_output().unwrap()
     }
@@ -152,12 +152,7 @@ fn calibration_prints_the_line_between_two_states() {
     let sense = |raw: u16| cell.stations[ARM].with(|coupler| coupler.inputs_mut()[0] = raw);
     let path = cell.mapping();
     let arguments = ["io-calibrate", path.to_str().unwrap(), "grip.potentiometer", "--counts", "205", "2305"];
-    let mut child = command(&arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = start(&arguments);
     let (mut answers, mut questions) = (child.stdin.take().unwrap(), child.stderr.take().unwrap());
     let mut asked = Vec::new();
     for (raw, counts) in [(1000, "205"), (30_000, "2305")] {

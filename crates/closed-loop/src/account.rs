@@ -175,7 +175,7 @@ impl Account {
         self.failures().find(|failure| failure.table.is_some())
     }
 
-    /// True if the link to the robot or to its devices is lost, or they were stopped, which is not a failure of the job.
+    /// True if the robot or a device is lost or was stopped, which is not a failure of the job.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.failures().any(|failure| failure.stopped)

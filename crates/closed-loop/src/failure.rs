@@ -27,7 +27,7 @@ pub struct Failure {
     pub table: Option<String>, // its decision table, if one decided
     pub row: Option<u8>,       // the row that fired, from 1
     pub text: String,
-    /// True if the link to the robot or to its devices is lost, or they were stopped, which is not a failure of the job.
+    /// True if the robot or a device is lost or was stopped, which is not a failure of the job.
     #[serde(skip)]
     pub stopped: bool,
 }

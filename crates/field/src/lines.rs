@@ -26,7 +26,7 @@ const TICKS_PER_S: u64 = 1000 / TICK_MS;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sequence {
     pub line: String,          // the words of the line without `**`, separated by one space
-    pub ask: String,           // what the operator is asked to do; empty if the devices do it
+    pub ask: String,           // request to the operator; empty if devices execute the line
     pub needs: Vec<Condition>, // conditions before the outputs are set
     pub sets: Vec<Setting>,
     pub begun: Vec<Condition>, // the device has taken the order

@@ -80,7 +80,7 @@ pub struct Run {
     pub(crate) warning: Option<Failure>, // the last warning on the screen of the robot controller
     pub(crate) alarms: Alarms,           // emergencies, fallen parts, and failed devices of the cell
     task: HwsStatus,
-    history: History, // what the processes did, for the chain of a failure
+    history: History, // changes of the processes, for the chain of a failure
     view: Box<View>,
     /// The states of the run that were logged last, and the reason why the job waits, if it does.
     viewed: Viewed,

@@ -19,7 +19,7 @@ const OF_PERSON: usize = 8;
 const CONNECTIONS: usize = 6;
 
 pub struct Login {
-    pub id: String, // what the browser keeps as a cookie: 128 random bits
+    pub id: String, // value of the browser's cookie: 128 random bits
     pub person: Person,
     until: Instant,
     is_over: AtomicBool,

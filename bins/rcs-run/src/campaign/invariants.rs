@@ -5,8 +5,8 @@
 //!   T3's wrist T3 Interface takes longer for a point; this is permitted;
 //! * E-move's status of the gripper is true: it holds an object, or nothing.
 //!
-//! The first three hold at all times. E-move may be wrong for [`CORRECTION_TICKS`] ticks after an interruption, because sensors
-//! report late.
+//! The first three hold at all times. E-move may be wrong for [`CORRECTION_TICKS`] ticks after an interruption, because
+//! sensors report late.
 
 use executive::alloc;
 use geometry::{frame::INCHES_PER_RADIAN, pose::WireFrame};

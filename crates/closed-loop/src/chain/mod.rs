@@ -84,7 +84,7 @@ impl Report {
 }
 
 impl Kind {
-    /// The lowest process whose command can have caused a failure of this kind: the gripper for a part that it lost, T3I
+    /// The lowest process whose command can have caused a failure of this kind: the gripper for a lost part, T3I
     /// for a warning of the robot controller, Prim for all other motion; `None` if no command can have caused it.
     #[must_use]
     pub const fn mover(self, gripper: Option<u8>) -> Option<ProcessId> {
