@@ -35,7 +35,7 @@ use crate::rcs_console::{
     cli::Cli,
     error::ConsoleError,
     hand::Hand,
-    hang_up::end_with_terminal,
+    hang_up::{end_with_terminal, terminal_error},
     model::{Effect, Key, Model, Operating, Place, Screen, terminal::library::Library},
     redraw::{cleared, suspended, with_control},
     search::Search,
@@ -55,8 +55,8 @@ pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
     end_by_signal(Arc::clone(&stop)).map_err(ConsoleError::Signals)?;
     // Errors of the source are reported before the terminal changes.
     let scene = Console::open(cli)?;
-    let screen = ratatui::try_init().map_err(ConsoleError::Terminal)?;
-    end_with_terminal().map_err(ConsoleError::Terminal)?;
+    let screen = ratatui::try_init().map_err(terminal_error)?;
+    end_with_terminal().map_err(terminal_error)?;
     let ended = Session {
         console: scene,
         look: cli.look(),
@@ -71,7 +71,7 @@ pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
     }
     .prepared()
     .run(screen);
-    ratatui::try_restore().map_err(ConsoleError::Terminal)?;
+    ratatui::try_restore().map_err(terminal_error)?;
     ended
 }
 
@@ -185,14 +185,14 @@ impl Session {
         while !self.stop.load(Ordering::Relaxed) {
             self.refresh();
             if self.drawn.is_none_or(|drawn| drawn.elapsed() >= DRAW) {
-                self.draw(&mut terminal).map_err(ConsoleError::Terminal)?;
+                self.draw(&mut terminal).map_err(terminal_error)?;
             }
             match event::poll(LOOK_AT) {
                 Ok(false) => {}
                 Ok(true) => {
-                    let event = event::read().map_err(ConsoleError::Terminal)?;
+                    let event = event::read().map_err(terminal_error)?;
                     match with_control(&event) {
-                        Some('l') => terminal = cleared().map_err(ConsoleError::Terminal)?,
+                        Some('l') => terminal = cleared().map_err(terminal_error)?,
                         Some('z') => terminal = suspended(terminal)?,
                         _ => {}
                     }
@@ -203,7 +203,7 @@ impl Session {
                 }
                 // A signal interrupted the call; the flag tells which one.
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                Err(error) => return Err(ConsoleError::Terminal(error)),
+                Err(error) => return Err(terminal_error(error)),
             }
         }
         Ok(())
