@@ -24,11 +24,9 @@ use whole_system_tests::root;
 
 use self::sources::Sources;
 
-/// Name, owner, section, code, test.
 struct Line {
     kind: &'static str,
     name: String,
-    of: String,
     section: String,
     /// `Type::Variant` or `Record.field`; `None` for an omitted name, with the reason in place of the test.
     code: Option<String>,
@@ -39,7 +37,7 @@ struct Page {
     lines: Vec<Line>,
     /// Names that are not in the manual: code and reason. A star includes all of a type.
     beyond: Vec<(String, String)>,
-    differences: Vec<[String; 4]>, // another meaning than the manual's: name, owner, the manual, here
+    differences: Vec<[String; 4]>, // another meaning than the manual's: name, section, the manual, here
     mailboxes: Vec<[String; 5]>,   // chapter IX: description, address, bytes, section, test
     figures: Vec<(String, [usize; 3])>, // at the top: kind, total, in the code, tested
 }
@@ -66,20 +64,23 @@ fn page() -> Page {
         let Some(cells) = cells(line) else { continue };
         match (heading, cells.as_slice()) {
             (_, [first, ..])
-                if first.is_empty() || first == "name" || first == "code" || first == "mailbox" => {}
+                if first.is_empty() || first == "name" || first == "why" || first == "mailbox" => {}
             ("", [kind, numbers @ ..]) => {
                 let numbers: Vec<usize> = numbers.iter().map(|n| n.parse().expect("a figure")).collect();
                 page.figures.push((kind.clone(), numbers.try_into().expect("three figures")));
             }
-            ("Beyond the manual", [code, why]) => page.beyond.push((code.clone(), why.clone())),
-            ("Differences", [name, of, manual, here]) => {
-                page.differences.push([name, of, manual, here].map(Clone::clone));
+            ("Beyond the manual", [why, codes]) => {
+                let codes = codes.split(", ").map(|code| code.trim_matches('`').to_owned());
+                page.beyond.extend(codes.map(|code| (code, why.clone())));
+            }
+            ("Differences", [name, section, manual, here]) => {
+                page.differences.push([name, section, manual, here].map(Clone::clone));
             }
             ("Mailboxes", [mailbox, address, bytes, section, test]) => {
                 let line = [mailbox, address, bytes, section, test];
                 page.mailboxes.push(line.map(Clone::clone));
             }
-            (_, [name, of, section, code, test]) => page.lines.push(Line {
+            (_, [name, section, code, test]) => page.lines.push(Line {
                 kind: match heading {
                     "Commands" => "commands",
                     "Interface variables" => "variables",
@@ -87,7 +88,6 @@ fn page() -> Page {
                     _ => panic!("{line} is under {heading}"),
                 },
                 name: name.clone(),
-                of: of.clone(),
                 section: section.clone(),
                 code: (code != "—").then(|| code.clone()),
                 test: test.clone(),
@@ -159,7 +159,7 @@ fn names_of_the_page_are_in_the_code() {
     let page = page();
     for line in &page.lines {
         if let Some(code) = &line.code {
-            assert!(all.contains(code), "{} of {}: there is no {code}", line.name, line.of);
+            assert!(all.contains(code), "{} of {}: there is no {code}", line.name, line.section);
             assert_eq!(code.contains("::"), line.kind != "variables", "{code} among the {}", line.kind);
         }
     }
@@ -183,7 +183,8 @@ fn each_name_of_the_interfaces_is_on_the_page_once() {
     let all = Interfaces::new().everything();
     let wrong: Vec<_> = all.iter().filter(|code| named.contains(code.as_str()) == beyond(code)).collect();
     assert!(wrong.is_empty(), "not in one of the tables, and in one only: {wrong:#?}");
-    let unique: BTreeSet<_> = page.lines.iter().map(|line| (line.kind, &line.name, &line.of)).collect();
+    let unique: BTreeSet<_> =
+        page.lines.iter().map(|line| (line.kind, &line.name, &line.section, &line.code)).collect();
     assert_eq!(unique.len(), page.lines.len(), "no line stands twice");
 }
 
@@ -191,9 +192,9 @@ fn each_name_of_the_interfaces_is_on_the_page_once() {
 fn every_listed_difference_names_an_entry_of_the_page() {
     let page = page();
     assert!(!page.differences.is_empty());
-    for [name, of, manual, here] in &page.differences {
-        let is_named = |line: &Line| (&line.name, &line.of) == (name, of) && line.code.is_some();
-        assert!(page.lines.iter().any(is_named), "{name} of {of} is not among the names");
+    for [name, section, manual, here] in &page.differences {
+        let is_named = |line: &Line| (&line.name, &line.section) == (name, section) && line.code.is_some();
+        assert!(page.lines.iter().any(is_named), "{name} of {section} is not among the names");
         assert!(!manual.is_empty() && !here.is_empty(), "{name} differs from something in something");
     }
 }
@@ -223,9 +224,9 @@ fn commands_and_statuses_have_the_names_of_the_code() {
         let spelled = page
             .lines
             .iter()
-            .filter(|other| other.of == line.of && other.code.as_deref() == Some(code))
+            .filter(|other| other.section == line.section && other.code.as_deref() == Some(code))
             .any(|other| matches(other, code));
-        assert!(spelled, "{} of {} is not what {code} says", line.name, line.of);
+        assert!(spelled, "{} of {} is not what {code} says", line.name, line.section);
     }
 }
 
@@ -260,8 +261,12 @@ fn tests_named_by_the_page_exist() {
     }
     for line in page.lines {
         match line.code {
-            Some(_) => assert!(is_test(&line.test), "{} of {}: no test {}", line.name, line.of, line.test),
-            None => assert!(line.test.contains(' '), "{} of {} is left out for a reason", line.name, line.of),
+            Some(_) => {
+                assert!(is_test(&line.test), "{} of {}: no test {}", line.name, line.section, line.test)
+            }
+            None => {
+                assert!(line.test.contains(' '), "{} of {} is left out for a reason", line.name, line.section)
+            }
         }
     }
 }
@@ -284,15 +289,25 @@ fn figures_and_sections_match_the_interfaces() {
     }
 }
 
+/// Remedies of many reasons, and their words in the table of docs/reasons.md.
+const SHORT: [(&str, &str); 2] = [
+    ("*data*", "correct the command in the job, or correct the task data and load them"),
+    ("*job*", "send the right command, then `job skip`; correct the job"),
+];
+
 #[test]
 fn every_reason_is_on_its_page() {
     let mut rows = String::new();
     for reason in Reason::ALL.iter().filter(|reason| **reason != Reason::None) {
         let remedy = reason.remedy().unwrap_or("");
+        let remedy = SHORT.iter().find(|(_, long)| *long == remedy).map_or(remedy, |(short, _)| *short);
         let row = format!("| {} | {} | {remedy} |", reason.code(), reason.text());
         writeln!(rows, "{}", row.replace("  ", " ")).expect("a string has room");
     }
     let page = fs::read_to_string(root().join("docs/reasons.md")).expect("the page is there");
+    for (short, long) in SHORT {
+        assert!(page.contains(&format!("\n- {short}: {long}\n")), "docs/reasons.md explains {short}");
+    }
     let found = page.split_once("|---|---|---|\n").expect("it has a table").1;
     assert!(found == rows, "docs/reasons.md must have these rows:\n{rows}");
 }
