@@ -120,7 +120,7 @@ fn samples_of_the_tutorial_on_failures_match_the_output() {
 fn samples_of_the_tutorial_on_new_parts_match_the_output() {
     assert_eq!(
         run_samples("docs/teach-a-part.md"),
-        21,
+        16,
         "the page makes a part, shows its data, and breaks them"
     );
 }

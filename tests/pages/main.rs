@@ -8,7 +8,6 @@ use std::{
 
 use whole_system_tests::root;
 
-mod chains;
 mod columns;
 mod paths;
 mod type_names;

@@ -47,6 +47,11 @@ fn cells(line: &str) -> Option<Vec<String>> {
     Some(row.split(" | ").map(|cell| cell.trim().trim_matches('`').to_owned()).collect())
 }
 
+/// Texts in backquotes between commas; [`cells`] has removed the outer backquotes.
+fn items(cell: &str) -> impl Iterator<Item = String> {
+    cell.split(", ").map(|item| item.trim_matches('`').to_owned())
+}
+
 fn page() -> Page {
     let text = fs::read_to_string(root().join("docs/traceability.md")).expect("the page is there");
     let mut page = Page {
@@ -70,8 +75,7 @@ fn page() -> Page {
                 page.figures.push((kind.clone(), numbers.try_into().expect("three figures")));
             }
             ("Beyond the manual", [why, codes]) => {
-                let codes = codes.split(", ").map(|code| code.trim_matches('`').to_owned());
-                page.beyond.extend(codes.map(|code| (code, why.clone())));
+                page.beyond.extend(items(codes).map(|code| (code, why.clone())));
             }
             ("Differences", [name, section, manual, here]) => {
                 page.differences.push([name, section, manual, here].map(Clone::clone));
@@ -80,18 +84,25 @@ fn page() -> Page {
                 let line = [mailbox, address, bytes, section, test];
                 page.mailboxes.push(line.map(Clone::clone));
             }
-            (_, [name, section, code, test]) => page.lines.push(Line {
-                kind: match heading {
+            (_, [names, section, codes, test]) => {
+                let kind = match heading {
                     "Commands" => "commands",
                     "Interface variables" => "variables",
                     "Status values" => "statuses",
                     _ => panic!("{line} is under {heading}"),
-                },
-                name: name.clone(),
-                section: section.clone(),
-                code: (code != "—").then(|| code.clone()),
-                test: test.clone(),
-            }),
+                };
+                let names: Vec<String> = items(names).collect();
+                let codes: Vec<Option<String>> =
+                    if codes == "—" { vec![None; names.len()] } else { items(codes).map(Some).collect() };
+                assert_eq!(names.len(), codes.len(), "{line}");
+                page.lines.extend(names.into_iter().zip(codes).map(|(name, code)| Line {
+                    kind,
+                    name,
+                    section: section.clone(),
+                    code,
+                    test: test.clone(),
+                }));
+            }
             _ => panic!("a line with {} cells: {line}", cells.len()),
         }
     }
