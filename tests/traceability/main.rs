@@ -38,7 +38,7 @@ struct Page {
     /// Names that are not in the manual: code and reason. A star includes all of a type.
     beyond: Vec<(String, String)>,
     differences: Vec<[String; 4]>, // another meaning than the manual's: name, section, the manual, here
-    mailboxes: Vec<[String; 5]>,   // chapter IX: description, address, bytes, section, test
+    mailboxes: Vec<[String; 3]>,   // chapter IX: name, section, test
     figures: Vec<(String, [usize; 3])>, // at the top: kind, total, in the code, tested
 }
 
@@ -80,9 +80,8 @@ fn page() -> Page {
             ("Differences", [name, section, manual, here]) => {
                 page.differences.push([name, section, manual, here].map(Clone::clone));
             }
-            ("Mailboxes", [mailbox, address, bytes, section, test]) => {
-                let line = [mailbox, address, bytes, section, test];
-                page.mailboxes.push(line.map(Clone::clone));
+            ("Mailboxes", [mailbox, section, test]) => {
+                page.mailboxes.push([mailbox, section, test].map(Clone::clone));
             }
             (_, [names, section, codes, test]) => {
                 let kind = match heading {
@@ -244,20 +243,12 @@ fn commands_and_statuses_have_the_names_of_the_code() {
 #[test]
 fn the_mailboxes_are_those_of_the_neighbours() {
     let of = |role: &Role| role.to_controller().iter().chain(role.from_controller());
-    let all: BTreeSet<_> = Role::ALL
-        .iter()
-        .flat_map(of)
-        .map(|place| (place.name.to_owned(), format!("{:05X}", place.address), place.size.to_string()))
-        .collect();
+    let all: BTreeSet<_> = Role::ALL.iter().flat_map(of).map(|place| place.name.to_owned()).collect();
     let page = page();
-    let named: BTreeSet<_> = page
-        .mailboxes
-        .iter()
-        .map(|[name, address, bytes, _, _]| (name.clone(), address.clone(), bytes.clone()))
-        .collect();
+    let named: BTreeSet<_> = page.mailboxes.iter().map(|[name, ..]| name.clone()).collect();
     assert_eq!(named, all);
     let in_table = |name: &str| TABLE.iter().any(|place| place.name == name);
-    for [name, _, _, section, _] in &page.mailboxes {
+    for [name, section, _] in &page.mailboxes {
         assert_eq!(section.starts_with("IX, Table IX.1"), in_table(name), "{name}: {section}");
     }
 }
