@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""How far parts are from where they should be: section 2 of docs/cell.md.
+"""How far parts are from where they should be: docs/cell.md "Achieved".
 
     pip install mcap mcap-protobuf-support
     cargo build --release && python3 benches/accuracy.py [--seeds 20] [JOB...]
 
-Runs each job with the seeds 1 to 20 and prints, for each part, how far it lies from its place at the end, and, for a job that begins
-with a MOVE into the vise, where the part stood in it before the jaw closed, about its mean. Inches.
+Runs each job with the seeds 1 to 20. Prints the final distance of each part from its place. For a job that begins with a MOVE into
+the vise, also prints the spread of the part's position in the vise before the jaw closes. Inches.
 """
 
 import argparse

@@ -55,7 +55,7 @@ pub fn resolve(path: PathBuf) -> PathBuf {
 pub fn write(directory: &Path) -> io::Result<usize> {
     let place = |file: &Carried| directory.join(file.path);
     if let Some(there) = FILES.iter().map(place).find(|path| fs::symlink_metadata(path).is_ok()) {
-        let why = format!("{} is there already: name another directory", there.display());
+        let why = format!("{} already exists: name another directory", there.display());
         return Err(io::Error::new(io::ErrorKind::AlreadyExists, why));
     }
     let mut made = Made::default();
@@ -126,7 +126,7 @@ mod tests {
         fs::write(place.path().join("data/jobs/linkbar.job"), "mine").unwrap();
         let error = write(place.path()).unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
-        assert!(error.to_string().contains("data/jobs/linkbar.job is there already"), "{error}");
+        assert!(error.to_string().contains("data/jobs/linkbar.job already exists"), "{error}");
         assert!(!place.path().join("data/cell.toml").exists());
     }
 

@@ -96,7 +96,7 @@ fn built_in_data_are_used_if_named_or_without_a_directory() {
     assert_eq!(refused.status.code(), Some(2));
     assert!(text(&refused.stderr).contains("with --data built-in"), "{}", text(&refused.stderr));
     let named = run(&[&at_port[..], &["--data", "built-in"]].concat());
-    assert!(text(&named.stderr).contains("is no terminal device"), "{}", text(&named.stderr));
+    assert!(text(&named.stderr).contains("is not a terminal device"), "{}", text(&named.stderr));
     let made = run(&["init", "."]);
     assert!(made.status.success(), "{}", text(&made.stderr));
     let own = short(&[]);
@@ -159,7 +159,7 @@ fn a_copy_of_the_data_can_be_changed() {
     assert!(text(&refused.stderr).contains("LINKBAR9_BH"), "{}", text(&refused.stderr));
     let again = run(&["init", "."]);
     assert_eq!(again.status.code(), Some(2));
-    assert!(text(&again.stderr).contains("is there already"), "{}", text(&again.stderr));
+    assert!(text(&again.stderr).contains("already exists"), "{}", text(&again.stderr));
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn two_signals_at_once_stop_a_run_in_order() {
     assert!(result["failure"].is_null(), "{}", result["failure"]);
     assert!(result["ramp_ticks"].as_u64() > Some(0), "{result}");
     assert!(said.contains("the robot ramps to rest, then the run ends"), "{said}");
-    assert!(said.contains("Ctrl-C once more ends the run at once"), "{said}");
+    assert!(said.contains("Ctrl-C again ends the run at once"), "{said}");
     assert!(said.lines().last().unwrap().starts_with("rcs-run: linkbar was stopped by the user"), "{said}");
     let log = Log::open(&log).unwrap();
     assert!(log.complete && log.end.is_some(), "the log has no end");

@@ -771,7 +771,7 @@ fn inputs_of_an_incomplete_log_are_refused_or_announced() {
     let second = logs[1].clone();
     std::fs::remove_file(&second).unwrap();
     let refused = given(&path).err().unwrap();
-    assert!(refused.contains(&format!("{}, is not there", second.display())), "{refused}");
+    assert!(refused.contains(&format!("{}, is missing", second.display())), "{refused}");
 }
 
 #[test]

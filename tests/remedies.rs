@@ -289,7 +289,7 @@ fn object_in_a_vise_is_released_after_a_confirmation() {
     let mut it = Operated::start(&format!("{TO_VISE}{LEAVE}"));
     it.fails(Reason::NotClamped);
     let answer = it.ask("confirm clamped").unwrap();
-    assert!(answer.contains("LINKBAR1_BH counts as clamped at PFIXTURE"), "{answer}");
+    assert!(answer.contains("LINKBAR1_BH is treated as clamped at PFIXTURE"), "{answer}");
     it.go();
     it.finishes();
 }

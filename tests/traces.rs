@@ -199,7 +199,7 @@ fn another_end_is_a_difference_and_ends_the_comparison() {
 fn invalid_traces_are_refused() {
     let refused = |text: &str| {
         let found = compare(trace(&["1 a 0"]).as_bytes(), text.as_bytes(), &Renames::default());
-        found.map(|found| found.to_string()).expect_err("it is no trace")
+        found.map(|found| found.to_string()).expect_err("it is not a trace")
     };
     assert!(matches!(refused(""), CompareError::NoEnd("new")));
     assert!(matches!(refused("1\ta\t0\n"), CompareError::NoEnd("new")));

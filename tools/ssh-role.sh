@@ -1,9 +1,9 @@
 #!/bin/sh
-# Connects a neighbour that comes by ssh with the socket of a run, in one role (docs/several-machines.md "Without Zenoh").
+# Connects a neighbour on an ssh connection to the socket of a run, in one role (docs/several-machines.md "Without Zenoh").
 #
 #   tools/ssh-role.sh ROLE SOCKET
 #
-# As a forced command in authorized_keys. ROLE is workstation, data-system, pedestal, vision or operator; a hello of another role
+# Use it as a forced command in authorized_keys. ROLE is workstation, data-system, pedestal, vision or operator; a hello of another role
 # ends the connection. Needs socat.
 set -eu
 case ${1-} in

@@ -56,7 +56,7 @@ pub enum Command {
     Connect(ConnectArguments),
     /// Route the status of several cells to monitors: one connection shows all
     Router(RouterArguments),
-    /// Print the state of cells, a line each
+    /// Print the state of cells, one per line
     Monitor(MonitorArguments),
     /// Serve the page of a run to persons on the network of the cell, for their browsers
     Page(PageArguments),
@@ -109,7 +109,7 @@ pub enum PersonCommand {
         #[arg(long, value_name = "FILE")]
         people: PathBuf,
     },
-    /// Print the persons and their roles, a line each
+    /// Print the persons and their roles, one per line
     List {
         /// File with the persons
         #[arg(long, value_name = "FILE")]

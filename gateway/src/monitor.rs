@@ -1,4 +1,4 @@
-//! `rcs-gateway monitor`: the state of all cells of a shop, a line each. `examples/fleet.py` is the same in Python.
+//! `rcs-gateway monitor`: the state of all cells of a shop, one per line. `examples/fleet.py` is the same in Python.
 
 use std::{
     collections::BTreeMap,

@@ -249,7 +249,7 @@ fn refusing_or_slow_data_system_receives_the_update_once() {
         if fate == Fate::Refuses {
             assert_eq!(
                 (status.as_str(), reason.as_str()),
-                ("error", "the data base does not accept the update")
+                ("error", "the database does not accept the update")
             );
             let scratch = shop.controller.kill();
             shop.data_system.join().expect("it ends with its line");

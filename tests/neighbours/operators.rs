@@ -198,7 +198,7 @@ fn options_that_exclude_every_operator_are_refused() {
     let socket = format!("unix:{}", Scratch::new("nobody").file("rcs.sock").display());
     for (arguments, why) in [
         (&["--network", &socket][..], "nobody may connect at the address of --network"),
-        (&["--network", &socket, "--outside", "operator"], "an operator is no neighbour"),
+        (&["--network", &socket, "--outside", "operator"], "an operator is not a neighbour"),
         (&["--network", &socket, "--operator", "network"], "--operator network needs --clock real"),
         (&["--clock", "real", "--operator", "network"], "--operator network needs --clock real"),
     ] {

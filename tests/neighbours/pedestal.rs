@@ -214,7 +214,7 @@ fn start_pedestal(program: &Path, controller: &Controller) -> (Child, Arc<Atomic
     thread::spawn(move || {
         let mut line = String::new();
         while stdout.read_line(&mut line).is_ok_and(|bytes| bytes > 0) {
-            ours.fetch_or(line.starts_with("at work from tick "), Ordering::Release);
+            ours.fetch_or(line.starts_with("working since tick "), Ordering::Release);
             line.clear();
         }
     });

@@ -125,7 +125,7 @@ fn invalid_answers_are_reported_and_cause_no_motion() {
             "input-not-ready",
             "vision's answer to request 4 is not read: vision-ready-input 2 (ready) was expected, found 1",
         ),
-        ("garbled", "what vision has written is refused: 99 is no code of status"),
+        ("garbled", "what vision has written is refused: 99 is not a code of status"),
         ("truncated", "what vision has written is refused: a response of 18 bytes was expected, found 14"),
     ] {
         let ended = linkbar("no-answer", &format!("1:{fault}"));

@@ -142,7 +142,7 @@ fn refusals_of_cell_lines_name_number_and_reason() {
     let mut garbled = line(20, "vise close PFIXTURE");
     garbled[9] = 0xC3;
     let cases: [(Vec<u8>, u16, &str); 14] = [
-        (line(0, "vise close PFIXTURE"), 0, "a number from 1 on was expected, found 0"),
+        (line(0, "vise close PFIXTURE"), 0, "a number of at least 1 was expected, found 0"),
         (line(9, "load README.md"), 9, LOAD),
         (line(10, "load data/no-such-file.blk"), 10, LOAD),
         (line(11, "( aside ) load /dev"), 11, LOAD),
@@ -150,19 +150,19 @@ fn refusals_of_cell_lines_name_number_and_reason() {
         (
             line(13, "after 5 load README.md"),
             13,
-            "after stands in jobs only: the workstation controller counts the ticks, and sends the line then",
+            "after is for jobs only: the workstation controller counts the ticks, and sends the line then",
         ),
         (
             line(14, "wait 30"),
             14,
-            "wait stands in jobs only: the workstation controller counts the ticks by itself",
+            "wait is for jobs only: the workstation controller counts the ticks itself",
         ),
         (line(15, "dance"), 15, "no line for the cell is named dance"),
         (line(16, ""), 16, "a line for the cell was expected, such as vise close PFIXTURE; found none"),
         (
             garbled,
             20,
-            "printable characters and blanks behind them were expected for line, found C3 at byte 9",
+            "printable characters and blanks after them were expected for line, found C3 at byte 9",
         ),
         (line(21, "vise close PFIXTURE")[..100].to_vec(), 21, "a line of 242 bytes was expected, found 100"),
         (vec![22, 0], 22, "a line of 242 bytes was expected, found 2"),
@@ -226,7 +226,7 @@ fn a_reconnected_workstation_controller_continues_from_the_echo() {
     let pid = Pid::from_child(&controller.child);
     kill_process(pid, Signal::TERM).expect("it runs");
     let ended = controller.end();
-    assert_eq!(ended.status, Some(0), "an end that was asked for is no failure: {}", ended.said);
+    assert_eq!(ended.status, Some(0), "a requested end is not a failure: {}", ended.said);
     assert_eq!(ended.result["commands"].as_array().map(Vec::len), Some(2));
     assert_eq!(ended.result["allocations_after_start"], 0);
 }

@@ -71,7 +71,7 @@ fn directory_of_another_user_is_not_used() {
     let all: Vec<&str> = arguments.iter().map(String::as_str).chain(more).collect();
     let mut command = rcs(&scratch.file(""), &all);
     let ended = Ended::of(&command.env("RCS_RUNS", scratch.file("")).output().expect("it starts"));
-    assert_goes_on(&ended, "must belong to this user only (it is no directory)");
+    assert_goes_on(&ended, "must belong to this user only (it is not a directory)");
 }
 
 #[test]
@@ -103,7 +103,7 @@ fn stale_and_strange_files_do_not_disturb_and_are_removed() {
     let left = fs::read_dir(&root).expect("the directory of runs").flatten().map(|entry| entry.file_name());
     let mut left: Vec<_> = left.map(|name| name.to_string_lossy().into_owned()).collect();
     left.sort();
-    assert_eq!(left, ["lock", "no run at all", "salt"], "what is no run is not ours to remove");
+    assert_eq!(left, ["lock", "no run at all", "salt"], "only directories of runs are removed");
 }
 
 #[test]

@@ -17,9 +17,9 @@ use sessions::network::Address;
     version,
     about = "The simulated T3 controller behind a pseudo-terminal",
     after_help = "\
-Commands are read from standard input, one a line; help lists them. The start-up is that of the manual \
+Commands are read from standard input, one per line; help lists them. The start-up is that of the manual \
 (NBSIR 88-3692, IV.3.3): control power on, fault reset, hydraulics enable, manual on, align, auto, \
-cycle start. While a host has the link open, its DTR counts as on; when it closes the link, the \
+cycle start. While a host has the link open, its DTR is treated as on; when it closes the link, the \
 controller shows WD1. The end of standard input ends the program if standard input is a terminal; \
 otherwise it runs on.
 

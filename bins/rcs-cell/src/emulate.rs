@@ -172,7 +172,7 @@ impl Emulation {
             "status" => self.status(),
             "help" => stdout_line!("{HELP}"),
             "quit" => return true,
-            other => stdout_line!("error: {other} is no command; help lists them"),
+            other => stdout_line!("error: {other} is not a command; help lists them"),
         }
         false
     }

@@ -315,7 +315,7 @@ impl Coupler {
             stdout_line!("[station] {name}: a further connection is refused");
         }
         if clients.garbled != self.clients.garbled {
-            stdout_line!("[station] {name}: bytes that are no request; the connection is closed");
+            stdout_line!("[station] {name}: bytes that are not a request; the connection is closed");
         }
         let fallbacks = self.server.with(|emulated| emulated.fallbacks());
         if fallbacks != self.fallbacks {

@@ -28,7 +28,7 @@ impl Hand {
             return;
         }
         if let Err(error) = self.exchange(operating) {
-            let ended = "the run has ended: nothing can be asked for any more".to_owned();
+            let ended = "the run has ended: it takes no more requests".to_owned();
             operating.lost = Some(if is_over { ended } else { error.to_string() });
             operating.outbox.clear();
         }

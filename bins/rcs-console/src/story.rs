@@ -282,7 +282,7 @@ fn restart(before: &Picture, now: &Picture) -> String {
     let fault = [now, before].into_iter().find_map(|picture| picture.fault(ProcessId::T3i));
     match fault {
         Some(fault) => fault.text().to_owned(),
-        None => "T3 Interface began the link anew".to_owned(),
+        None => "T3 Interface restarted the link".to_owned(),
     }
 }
 

@@ -202,7 +202,7 @@ fn operator_confirms_steps_of_a_robot_at_a_port() {
     assert_eq!([word(&model, "1"), word(&model, "2"), cursor(&model)], ["said", "said", "3"]);
     model.key(Key::Char('y'), &stage);
     assert_eq!(word(&model, "3"), "", "the potentiometer of the table is read here, too");
-    assert!(model.answer.as_deref().is_some_and(|answer| answer.starts_with("the console sees")));
+    assert!(model.answer.as_deref().is_some_and(|answer| answer.starts_with("the console checks")));
     model.key(Key::Enter, &stage);
     assert!(model.answer.as_deref().is_some_and(|answer| answer.contains("--operate")));
 }

@@ -226,7 +226,7 @@ fn operator_takes_over_from_a_workstation_controller() {
     assert_eq!(asked(&mut model), "stand-alone now");
     let operating = model.operating.as_mut().unwrap();
     operating.sent(5, "stand-alone now".into());
-    operating.answered(5, Ok("tick 656: the workstation controller commands no more".into()));
+    operating.answered(5, Ok("tick 656: the workstation controller no longer commands".into()));
     assert!(model.taking_over().is_none());
 }
 

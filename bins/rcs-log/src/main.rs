@@ -49,7 +49,7 @@ Examples:
   rcs-log fork runs/linkbar.mcap --tick 4600 --set 'line=** wait 50'   what if the next line came 2 s later?
   rcs-log compare data ../new/data          what do other data change in the jobs?
   rcs-log open runs/linkbar.mcap            look through the run in a browser
-  rcs-log page runs/linkbar.mcap -o run.html    the same page as one file, for a mail
+  rcs-log page runs/linkbar.mcap -o run.html    the same page as one file, to send by e-mail
   rcs-log serve runs/linkbar.mcap --rate 5  play the run in Foxglove or Lichtblick, five times as fast
   rcs-log golden runs/*.mcap -o tests/goldens   small files for tests, with their texts
 

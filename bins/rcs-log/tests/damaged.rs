@@ -86,7 +86,7 @@ fn damage_in_the_middle_keeps_the_rest_readable() {
     let info: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(info["missing_ticks"], 25, "{info}");
     assert_eq!((&info["ticks"], &info["complete"]), (&(TICKS - 25).into(), &true.into()));
-    assert!(info["damage"].as_str().unwrap().contains("damaged; what they held is missing"), "{info}");
+    assert!(info["damage"].as_str().unwrap().contains("damaged; their contents are missing"), "{info}");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(said.contains("damaged"), "{said}");
     let output = rcs_log(&["replay"], &[&path]);

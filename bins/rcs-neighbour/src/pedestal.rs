@@ -54,7 +54,7 @@ impl Served {
         loop {
             let Received::Pulse(pulse) = peer.receive()? else { continue };
             if !is_there {
-                os_io::stdout_line!("at work from tick {pulse} on");
+                os_io::stdout_line!("working since tick {pulse}");
                 is_there = true;
             }
             if pulse <= self.pulse {

@@ -501,7 +501,7 @@ pub struct CheckArguments {
     /// `rcs-run pose --of NAME` does
     #[arg(long = "where", value_name = "NAME", conflicts_with_all = ["explain", "explain_job", "urdf"])]
     pub place: Option<String>,
-    /// Location at which the robot is assumed to stand before the command
+    /// Location of the robot before the command
     #[arg(long, value_name = "NAME", default_value = "HOME", requires = "explain")]
     pub from: String,
     /// Check also whether the arm of this robot reaches every taught pose and can follow every path of every job: a
@@ -538,7 +538,7 @@ fn robot() -> impl TypedValueParser<Value = RobotConfig> {
 
 fn port(text: &str) -> Result<u16, String> {
     text.parse()
-        .map_err(|_| format!("a port from 0 to 65535 was expected, found {text}; a job stands before --live"))
+        .map_err(|_| format!("a port from 0 to 65535 was expected, found {text}; name the job before --live"))
 }
 
 /// Yes or no.

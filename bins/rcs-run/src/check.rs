@@ -332,7 +332,7 @@ fn mappings(data: &Path) -> Diagnostics {
 }
 
 /// The jobs that a mapping of a data directory cannot execute. A directory may have mappings of several cells, so such
-/// a job is no error of the data.
+/// a job is not an error of the data.
 fn not_by_field(data: &Path, jobs: &[Job]) -> Vec<String> {
     let mut refused = Vec::new();
     for path in FIELDS.all(data) {

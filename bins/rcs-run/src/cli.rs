@@ -25,7 +25,7 @@ Examples:
   rcs-run linkbar --clock real         the same, one tick every 40 ms
   rcs-run my.job --seed 7 --json       a job file, other noise, the result as JSON
   rcs-run --faults air-lost            the air fails in the middle of the job
-  rcs-run --boards split               one operating system process a board; the same result, bit for bit
+  rcs-run --boards split               one operating system process per board; the same result, bit for bit
   rcs-run link-test --robot serial:/dev/ttyUSB0
                                        test the serial line to a robot; nothing moves
   rcs-run --robot serial:/dev/ttyUSB0 --clock real
@@ -171,8 +171,8 @@ mod tests {
         assert_eq!(live(&["shift", "--live"]).ok(), Some(("shift".into(), Some(8765))));
         assert_eq!(live(&["--live", "--clock", "real"]).ok(), Some(("linkbar".into(), Some(8765))));
         assert_eq!(live(&["--live", "9000"]).ok(), Some(("linkbar".into(), Some(9000))));
-        let error = live(&["--live", "shift"]).expect_err("that is no port").to_string();
-        assert!(error.contains("a job stands before --live"), "{error}");
+        let error = live(&["--live", "shift"]).expect_err("that is not a port").to_string();
+        assert!(error.contains("name the job before --live"), "{error}");
         assert!(live(&["--live-origin", "http://localhost:80"]).is_err());
         assert!(live(&["--live", "--live-origin", "localhost"]).is_err());
     }

@@ -61,7 +61,7 @@ pub enum Error {
     Board(#[from] MemberError),
     /// The console is not installed.
     #[error(
-        "the console is not there: {} was expected; cargo build --release --bin rcs-console makes it",
+        "the console is missing: {} was expected; cargo build --release --bin rcs-console makes it",
         .0.display()
     )]
     NoConsole(PathBuf),

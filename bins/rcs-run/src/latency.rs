@@ -56,7 +56,7 @@ impl Fitness {
                 "usable: every frame is on the line within its tick, but not always at the same time in it"
             }
             Self::Poor => {
-                "poor: slots are skipped, or wake-ups come milliseconds late; the robot will wait for points"
+                "poor: slots are skipped, or wake-ups are milliseconds late; the robot will wait for points"
             }
         }
     }

@@ -74,7 +74,7 @@ impl Observer for Progress {
 
     fn event(&mut self, _: Tick, event: &Event) {
         if matches!(event, Event::UserStops) {
-            self.message("Ctrl-C once more ends the run at once, also with the robot in motion");
+            self.message("Ctrl-C again ends the run at once, even with the robot in motion");
         }
     }
 

@@ -240,7 +240,7 @@ impl fmt::Display for Reach {
             match &job.trouble {
                 None => writeln!(
                     f,
-                    "{:>4} ways; axis {} comes to {:.1} degrees from its limit, the wrist to {:.1} from straight",
+                    "{:>4} ways; axis {} comes within {:.1} degrees of its limit, the wrist within {:.1} of straight",
                     job.ways, job.axis, job.margin_deg, job.wrist_deg
                 ),
                 Some(Trouble { line, way, at_mm: [x, y, z], why }) => writeln!(

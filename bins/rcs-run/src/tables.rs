@@ -29,7 +29,7 @@ first one that fits decides. A row fits if the command is in one of the row's st
 and if each variable that the row names has one of the values behind it; `otherwise` fits always. It names one
 action, and the next step where the step changes.
 
-`consult` is no decision: the process goes on to another table, with the value in brackets, until a row
+`consult` is not a decision: the process continues with another table, with the value in brackets, until a row
 decides. First come the tables that all commands have in common, then those of the command: at most three, for
 what it shares with other commands and for its phases. Their comments say which one is consulted first.
 

@@ -123,7 +123,7 @@ fn log_head_above_the_size_limit_is_not_begun() {
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    assert!(said(&output).contains("the log could not be begun: File too large"), "{}", said(&output));
+    assert!(said(&output).contains("the log could not be started: File too large"), "{}", said(&output));
 }
 
 #[test]

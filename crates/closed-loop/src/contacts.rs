@@ -424,7 +424,7 @@ mod tests {
         assert_eq!(play(&mut deep, &[(0.05, GRASP), (0.11, GRASP)]).len(), 1);
         let mut other = new_check();
         other.look(Tick(1), &[contact("wrist", Kind::Arm, 0.05)], GRASP);
-        assert!(other.verdict().is_some(), "the wrist is no finger");
+        assert!(other.verdict().is_some(), "the wrist is not a finger");
     }
 
     #[test]

@@ -136,7 +136,7 @@ impl Diagnostics {
     /// Numbers of errors, warnings, blocks, files and records, in one or two lines.
     #[must_use]
     pub fn summary(&self) -> String {
-        let told = if self.told > 0 { format!(" and {} told above", self.told) } else { String::new() };
+        let told = if self.told > 0 { format!(" and {} reported above", self.told) } else { String::new() };
         let mut out = format!(
             "{}, {}{told}; {} in {}\n",
             amount(self.errors().count(), "error"),

@@ -92,6 +92,6 @@ mod tests {
         );
         assert_eq!(said(&second), words(&[("alone", "")]));
         assert_eq!(said(&third), []);
-        assert_eq!(third.summary(), "0 errors, 0 warnings and 2 told above; 0 blocks in 1 file\n");
+        assert_eq!(third.summary(), "0 errors, 0 warnings and 2 reported above; 0 blocks in 1 file\n");
     }
 }

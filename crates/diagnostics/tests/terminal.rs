@@ -8,7 +8,7 @@ fn without_colours(text: &str) -> String {
     let first = parts.next().unwrap_or_default().to_owned();
     parts.fold(first, |text, part| {
         let end = part.find(|c: char| !c.is_ascii_digit() && c != ';').unwrap_or(part.len());
-        text + part.get(end..).and_then(|rest| rest.strip_prefix('m')).unwrap_or("\u{1b} is no colour")
+        text + part.get(end..).and_then(|rest| rest.strip_prefix('m')).unwrap_or("\u{1b} is not a colour")
     })
 }
 

@@ -200,7 +200,7 @@ fn missing_boards_are_named() {
         assert_eq!(error.to_string(), "interrupted while waiting for board 6");
         let error = coordinator.gather(Duration::ZERO, &AtomicBool::new(false), |_, _| ());
         let error = error.expect_err("it does not come");
-        assert_eq!(error.to_string(), "board 6 did not come within 0 s");
+        assert_eq!(error.to_string(), "board 6 did not start within 0 s");
     });
 }
 

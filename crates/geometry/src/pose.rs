@@ -44,7 +44,7 @@ pub enum PoseError {
 impl fmt::Display for PoseError {
     #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("wrist, tool and finger points must be three points that do not stand on a line")
+        f.write_str("wrist, tool and finger points must be three points that are not on one line")
     }
 }
 

@@ -85,7 +85,7 @@ pub struct Carried {
 }
 
 /// The connection to the Data System, the pending updates and the carried object. As an output it survives a restart
-/// of Task (docs/design/recovery.md "Data base"; extension).
+/// of Task (docs/design/recovery.md "Database"; extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct DataBaseUpdates {
     /// STARTUP has succeeded, without a later SHUTDOWN.

@@ -173,7 +173,7 @@ pub enum Reason {
     NotAtGoal,
     /// A sensor is overloaded or fails.
     SensorError,
-    /// The data base does not accept the update.
+    /// The database does not accept the update.
     DataBase,
     /// The trajectory parameters allow no motion.
     BadParameters,

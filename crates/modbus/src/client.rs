@@ -19,7 +19,7 @@ pub enum Response<'a> {
 }
 
 impl<'a> Response<'a> {
-    /// Reads an answer after its header. [`Error::Refused`] if the server refused, another error if it is no answer.
+    /// Reads an answer after its header. [`Error::Refused`] if the server refused, another error for an invalid answer.
     pub fn parse(request: &Request<'_>, body: &'a [u8]) -> Result<Self, Error> {
         let mut reader = Reader::new(body);
         let (expected, found) = (request.function(), reader.byte()?);

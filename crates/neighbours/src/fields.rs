@@ -39,15 +39,15 @@ impl fmt::Display for FieldError {
             Self::Character { field, at, found } => {
                 write!(
                     f,
-                    "printable characters and blanks behind them were expected for {field}, found {found:02X} at byte {at}"
+                    "printable characters and blanks after them were expected for {field}, found {found:02X} at byte {at}"
                 )
             }
-            Self::Word { field, found } => write!(f, "{found} is no word of {field}"),
+            Self::Word { field, found } => write!(f, "{found} is not a word of {field}"),
             Self::Expected { field, expected, found } => {
                 write!(f, "{expected} was expected for {field}, found {found}")
             }
             Self::Infinite { field } => write!(f, "a finite number was expected for {field}"),
-            Self::Code { field, found } => write!(f, "{found} is no code of {field}"),
+            Self::Code { field, found } => write!(f, "{found} is not a code of {field}"),
         }
     }
 }

@@ -25,6 +25,6 @@ fn main() {
         kept.extend(0..16_u8);
     });
     let makes = count(|| drop(std::hint::black_box((0..16_u8).collect::<Vec<_>>())));
-    println!("buffer kept: {keeps} allocations; made anew: {makes}");
+    println!("buffer kept: {keeps} allocations; made again: {makes}");
     assert_eq!((keeps, makes), (0, 100));
 }

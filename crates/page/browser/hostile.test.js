@@ -176,7 +176,7 @@ test('damaged_log_shows_what_is_wrong', async () => {
     `document.querySelector('.state b')?.innerText || document.querySelector('.notice p')?.innerText`,
   );
   await half.close();
-  const other = await open('other.html', Buffer.from('this is no log'));
+  const other = await open('other.html', Buffer.from('this is not a log'));
   await other.until(
     `document.querySelector('.notice')?.innerText.includes('does not begin as an MCAP file')`,
   );

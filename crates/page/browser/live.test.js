@@ -130,7 +130,7 @@ test('operator_stops_goes_pauses_turns_the_knob_and_sends_lines', async () => {
   await page.until(state('RUNNING'));
   await page.press('.large.stop');
   await page.until(state('STOPPED'));
-  // A tap is no hold.
+  // A tap is not a hold.
   await page.press('.large.go', 100);
   await new Promise((resolve) => setTimeout(resolve, 800));
   assert.ok(await page.value(state('STOPPED')));
@@ -186,7 +186,7 @@ test('lost_connection_shows_within_a_second_and_comes_back', async (t) => {
   const live = await Live.start();
   const page = await browser.open(`${live.address}#view=operate&token=${live.token}`);
   await page.until(`document.querySelector('.large.stop')`);
-  // The least of three times counts, because other load on the machine is no fault of the page.
+  // The least of three times counts, because other load on the machine is not a fault of the page.
   const times = [];
   for (let run = 0; run < 3; run++) {
     if (run > 0) {

@@ -50,7 +50,7 @@ impl State<'_> {
                 &phase,
                 &returned,
                 &names,
-                "flown back after an interruption, ",
+                "followed back after an interruption, ",
                 clear,
             ));
         }
@@ -150,7 +150,7 @@ impl State<'_> {
             } else if flown.margin.radians.to_degrees() < LEAST_MARGIN && leg > 0 {
                 let degrees = flown.margin.radians.to_degrees();
                 let joint = JOINT_NAMES.get(flown.margin.joint).copied().unwrap_or("joint");
-                let what = format!("{joint} comes to {degrees:.2} degrees from its limit");
+                let what = format!("{joint} comes within {degrees:.2} degrees of its limit");
                 add("path.margin", false, what, joint.to_owned(), -degrees);
             }
         }
@@ -269,7 +269,7 @@ pub(crate) fn in_words(trouble: Trouble) -> (String, String, f64) {
                     format!("{name} leaves its limits of {low:.0} and {high:.0} degrees by {by:.2}")
                 }
                 None if problem == JointProblem::WristSingularity => {
-                    "the gripper axis comes to lie along the pitch axis".to_owned()
+                    "the gripper axis becomes parallel to the pitch axis".to_owned()
                 }
                 None => "the arm is too short, or too long".to_owned(),
             };

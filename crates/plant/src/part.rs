@@ -123,7 +123,7 @@ impl fmt::Display for PartState {
         let place = match self.location.as_str() {
             "gripper" => "in the gripper".to_owned(),
             "floor" => "on the floor".to_owned(),
-            "elsewhere" => "at no place of the cell".to_owned(),
+            "elsewhere" => "at none of the cell's places".to_owned(),
             vise if self.clamped => format!("clamped in {vise}"),
             location => format!("at {location}"),
         };

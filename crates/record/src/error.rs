@@ -17,7 +17,7 @@ pub enum RecordError {
     InUse { path: PathBuf },
     #[error("the log {path} was removed during the run")]
     Removed { path: PathBuf },
-    #[error("the log could not be begun: {}", deepest(.0))]
+    #[error("the log could not be started: {}", deepest(.0))]
     Begin(#[source] mcap::McapError),
     #[error("the log could not be written further: {}", deepest(.0))]
     Write(#[from] mcap::McapError),

@@ -27,7 +27,7 @@ pub enum Part {
 pub enum Before {
     #[error("the first log of the run is {}", .0.display())]
     First(PathBuf),
-    #[error("the log before it, {}, is not there", .0.display())]
+    #[error("the log before it, {}, is missing", .0.display())]
     Missing(PathBuf),
     #[error("its begin is damaged")]
     Damaged,

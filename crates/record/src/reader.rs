@@ -179,9 +179,9 @@ impl Log {
         let places: Vec<String> = self.segments.iter().filter_map(damaged).collect();
         let (first, more) = (places.first()?, places.len().saturating_sub(1));
         Some(match more {
-            0 => format!("{first}; what they held is missing"),
-            1 => format!("{first}, and 1 more place cannot be read; what they held is missing"),
-            _ => format!("{first}, and {more} more places cannot be read; what they held is missing"),
+            0 => format!("{first}; their contents are missing"),
+            1 => format!("{first}, and 1 more place cannot be read; their contents are missing"),
+            _ => format!("{first}, and {more} more places cannot be read; their contents are missing"),
         })
     }
 

@@ -56,7 +56,7 @@ fn commands(
         say(Level::Info, "task", format!("command {}: {}", is.echo, hws.in_words()));
     }
     if was.echo != is.echo && after.task.connection == Connection::Interrupted {
-        let text = "STARTUP was interrupted: the Data System is told nothing until it is sent again";
+        let text = "STARTUP was interrupted: the Data System receives nothing until it is sent again";
         say(Level::Warning, "task", text.to_owned());
     }
     if was.report != is.report && is.report != HwsReport::Idle {
@@ -109,7 +109,7 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
     let ordered = is_restart_ordered(before);
     match (was.link_running, is.link_running) {
         (_, false) if ordered => {
-            say(Level::Info, "the link to the robot begins anew, as Prim has ordered".to_owned())
+            say(Level::Info, "the link to the robot starts again, as Prim has ordered".to_owned())
         }
         (false, true) => say(Level::Info, "the link to the robot runs".to_owned()),
         (true, false) => say(Level::Warning, "the link to the robot is lost".to_owned()),
@@ -263,7 +263,7 @@ mod tests {
         after.task.status.echo = 2;
         let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
         let told: Vec<_> = said.iter().map(|remark| (remark.level, remark.text.as_str())).collect();
-        let text = "STARTUP was interrupted: the Data System is told nothing until it is sent again";
+        let text = "STARTUP was interrupted: the Data System receives nothing until it is sent again";
         assert!(told.contains(&(Level::Warning, text)), "{told:?}");
         after.task.connection = Connection::Open;
         assert_eq!(remarks(&headers(), &HwsCommand::default(), &before, &after).len(), 1);
@@ -357,7 +357,7 @@ mod tests {
         (after.t3i.status.link_running, after.t3i.status.counters.restarts) = (false, 1);
         let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
         let told: Vec<_> = said.iter().map(|remark| (remark.level, remark.text.as_str())).collect();
-        assert_eq!(told, [(Level::Info, "the link to the robot begins anew, as Prim has ordered")]);
+        assert_eq!(told, [(Level::Info, "the link to the robot starts again, as Prim has ordered")]);
         before.t3i.status.echo = 1;
         let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
         assert_eq!(said[0].level, Level::Warning, "it was read before");

@@ -469,7 +469,7 @@ fn other_files_are_refused_as_logs() {
     let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     assert!(matches!(Log::open(&path), Err(ReadError::Unreadable { .. })));
-    for bytes in [&b""[..], b"PK\x03\x04 this is no MCAP file at all", &[0x89, b'M', b'C']] {
+    for bytes in [&b""[..], b"PK\x03\x04 this is not an MCAP file at all", &[0x89, b'M', b'C']] {
         fs::write(&path, bytes).unwrap();
         assert!(Log::open(&path).is_err_and(|error| error.to_string().contains("run.mcap")));
     }
@@ -690,7 +690,7 @@ fn golden_of_a_partial_run_or_other_format_is_refused() {
     assert_eq!(error.to_string(), "the log cannot become a golden: it has no end");
     for bytes in [&b"RCSGOLD\x02whatever"[..], b"", b"RCSGOLD\x01and no compressed bytes"] {
         fs::write(&path, bytes).unwrap();
-        assert!(golden::read(&path).is_err_and(|error| error.to_string().contains("no golden run")));
+        assert!(golden::read(&path).is_err_and(|error| error.to_string().contains("not a golden run")));
     }
 }
 

@@ -76,14 +76,14 @@ impl Run {
 
     /// Insert a line before the next one of the job.
     pub fn insert_line(&mut self, line: JobLine) -> Result<(), ChangeError> {
-        let text = format!("a line of the job more: {}", line.text);
+        let text = format!("one more line of the job: {}", line.text);
         self.neighbours.job_player().ok_or(ChangeError::NoJob)?.insert(line);
         self.note_change(&text);
         Ok(())
     }
 
     pub fn replace_command(&mut self, line: JobLine) -> Result<(), ChangeError> {
-        let text = format!("the next command of the job is another one: {}", line.text);
+        let text = format!("the next command of the job is replaced: {}", line.text);
         if !self.neighbours.job_player().ok_or(ChangeError::NoJob)?.replace_command(line) {
             return Err(ChangeError::NoCommand(self.last_tick().0));
         }

@@ -120,7 +120,7 @@ impl Commanded {
             paused.map_err(|error| error.to_string())?;
         }
         self.alone = Some(JobPlayer::new(hwsc));
-        Ok("the workstation controller commands no more; `workstation` gives the command back".to_owned())
+        Ok("the workstation controller no longer commands; `workstation` gives the command back".to_owned())
     }
 
     /// Give the command to the workstation controller. Errors: the reason, as a sentence.

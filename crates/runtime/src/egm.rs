@@ -239,7 +239,7 @@ impl EgmPort {
 
 fn trouble(sample: &Sample) -> &'static str {
     match sample.link {
-        LinkState::Waiting => "no message has come yet",
+        LinkState::Waiting => "no message has arrived yet",
         LinkState::Lost => "it has sent no message for 3 ticks",
         LinkState::Standby(hindrance) => hindrance.text(),
         LinkState::Running => "it follows",

@@ -44,7 +44,7 @@ pub enum StartError {
     NoOwnRobot,
     #[error("the file has faults of the line to the simulated robot; leave them out for any other robot")]
     FaultsAtPort,
-    #[error("the field I/O cannot begin: {0}")]
+    #[error("the field I/O cannot start: {0}")]
     Field(#[from] closed_loop::field::FieldError),
     #[error("the mapping of --field cannot execute the job: {}", .0.join("; "))]
     LinesWithoutDevices(Vec<String>),
@@ -53,9 +53,9 @@ pub enum StartError {
         "couplers over TCP need real time: add --clock real, or use --field sim:NAME for emulated couplers"
     )]
     FieldNotInRealTime,
-    #[error("the field I/O cannot begin: {device}: {source}")]
+    #[error("the field I/O cannot start: {device}: {source}")]
     FieldDevice { device: String, source: executive::field::DeviceError },
-    #[error("the field I/O cannot begin: {}", .0.join("; "))]
+    #[error("the field I/O cannot start: {}", .0.join("; "))]
     FieldNotReady(Vec<String>),
     #[error("the fault file cuts the connection of {0:?}, which needs emulated couplers: --field sim:NAME")]
     CutOverTcp(String),
@@ -77,7 +77,9 @@ pub enum StartError {
     DataBaseElsewhere,
     #[error("{0}; --outbox names another file")]
     Outbox(#[from] OutboxError),
-    #[error("an operator is no neighbour: --operator network lets operators connect, not --outside operator")]
+    #[error(
+        "an operator is not a neighbour: --operator network lets operators connect, not --outside operator"
+    )]
     OperatorOutside,
     /// An address requires a neighbour or an operator that may connect there.
     #[error(
@@ -101,7 +103,7 @@ pub enum StartError {
          --shared-memory on"
     )]
     ResumeStandBy,
-    #[error("{0}; without --resume the run starts as after switching on, and knows nothing")]
+    #[error("{0}; without --resume the run starts as after power-on, with no knowledge")]
     Journal(#[from] record::journal::JournalError),
     /// The journal belongs to a run with other data.
     #[error(

@@ -201,7 +201,7 @@ impl fmt::Display for Event {
             Self::CellLineRefused(why) => write!(f, "a line of the workstation is refused: {why}"),
             Self::CellStatusUnsent(error) => error.fmt(f),
             Self::HandedOver => f.write_str("the workstation controller commands from here on"),
-            Self::TakenBack => f.write_str("the workstation controller has gone; the job goes on"),
+            Self::TakenBack => f.write_str("the workstation controller has gone; the job continues"),
             Self::Loaded { generation, name } => {
                 write!(f, "task data, generation {generation}: {name} is loaded")
             }
@@ -227,7 +227,7 @@ impl fmt::Display for Event {
             }
             Self::Stops => f.write_str("the robot is brought to rest, and the run ends"),
             Self::Holds => write!(f, "the robot holds until {PUNCTUAL} ticks in a row were punctual"),
-            Self::Punctual => f.write_str("punctual again: the robot goes on"),
+            Self::Punctual => f.write_str("punctual again: the robot continues"),
         }
     }
 }

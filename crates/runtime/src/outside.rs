@@ -253,7 +253,7 @@ impl OutsideWorkstation {
         self.line_read = mailbox.mailgram();
         let begun = match cell::decode_line(mailbox.data()) {
             Err(error) => Err(error.to_string()),
-            Ok(CellLine { number: 0, .. }) => Err("a number from 1 on was expected, found 0".to_owned()),
+            Ok(CellLine { number: 0, .. }) => Err("a number of at least 1 was expected, found 0".to_owned()),
             Ok(CellLine { number, text: Ok(_) }) if number == self.line => return,
             Ok(CellLine { number, text }) => {
                 let line = text.map(str::to_owned).map_err(|error| error.to_string());

@@ -178,7 +178,7 @@ fn long_cuts_wait_for_an_operator_and_drop_nothing() {
         assert!(!outcome.is_finished(), "2 s at tick {at}");
         assert_eq!((codes.count("io.stale"), codes.count("io.released")), (1, 0));
         let Ending::Failed(account) = &outcome.ending else { panic!("2 s at tick {at}") };
-        assert!(account.is_stopped(), "stopped devices are no failure of the job: {account}");
+        assert!(account.is_stopped(), "stopped devices are not a failure of the job: {account}");
         assert!(account.first.text.contains("grip.potentiometer"), "the held readings: {account}");
     }
 }

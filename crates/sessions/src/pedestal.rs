@@ -60,7 +60,7 @@ impl std::fmt::Display for Remark {
             Self::Network(event) => event.fmt(f),
             Self::Refuses(why) => write!(f, "the Active Pedestal refuses what was sent to it: {why}"),
             Self::Garbled(place, why) => {
-                write!(f, "{place} cannot be read, the Active Pedestal counts as not answering: {why}")
+                write!(f, "{place} cannot be read, the Active Pedestal is treated as not answering: {why}")
             }
             Self::Silent(number) => {
                 write!(f, "the Active Pedestal has not echoed command {number} for {ECHO_TICKS} ticks")
@@ -291,7 +291,7 @@ mod tests {
         assert_eq!(
             bench.remarks(),
             [
-                "mailbox Pedestal Gripper to RCS Status at F5600 cannot be read, the Active Pedestal counts as not \
+                "mailbox Pedestal Gripper to RCS Status at F5600 cannot be read, the Active Pedestal is treated as not \
               answering: a status of the gripper of 142 bytes was expected, found 6"
             ]
         );

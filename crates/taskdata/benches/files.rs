@@ -190,7 +190,7 @@ fn bench(c: &mut Criterion) {
     look_up(c, "grip by object name, grip and place", &even, |name| {
         data.grip_movetable(name, 2, &f).expect("it is there").number()
     });
-    look_up(c, "grip by the wild card, after all others in vain", &odd, |name| {
+    look_up(c, "grip by the wild card, after all others without a match", &odd, |name| {
         data.grip_movetable(name, 2, &g).expect("it is there").number()
     });
     look_up(c, "grasp parameters by object name and grip", &even, |name| {

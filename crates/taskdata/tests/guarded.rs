@@ -169,12 +169,12 @@ fn relative_moves_equal_those_of_commands() {
         said("  -rel- INS-IN lpt TOOL-TRNS 4 1 8 0 IN"),
         [
             "INS-IN is a guarded move and names no sensor",
-            "help: write the name of a sensor (-sen-) behind the movetable",
+            "help: write the name of a sensor (-sen-) after the movetable",
         ]
     );
     assert_eq!(
         warned("  -rel- INS-FAR lpt TOOL-TRNS 4 1 8 0 IN INS-FX"),
-        ["INS-FAR is no guarded move: nothing watches INS-FX", "leave the sensor out"]
+        ["INS-FAR is not a guarded move: nothing watches INS-FX", "leave the sensor out"]
     );
     assert_eq!(
         said("  -rel- INS-NEER lpt TOOL-TRNS 4 1 8 0 IN"),

@@ -96,7 +96,7 @@ fn command_that_must_fail_is_accepted() {
                  == PAUSE -- +0 -- 0 +0 -- 0 -- 0 #17 expect error\n";
     assert_eq!(expecting(lines), [false, true, true]);
     let other = steps("== PAUSE -- +0 -- 0 +0 -- 0 -- 0 expect finished").unwrap_err();
-    assert!(other.contains("error was expected behind expect"), "{other}");
+    assert!(other.contains("error was expected after expect"), "{other}");
     assert!(steps("** wait 5 expect error").is_err(), "nothing fails");
 }
 
@@ -261,7 +261,7 @@ fn every_job_error_has_its_message() {
         (
             "** tray UNIT_1 four LINKBAR1_BH",
             "column 16: a sector, a whole number, was expected; four found",
-            "** tray UNIT SECTOR OBJECT, or with X Y ANGLE behind it",
+            "** tray UNIT SECTOR OBJECT, or with X Y ANGLE after it",
         ),
         (
             "** machine LINKBAR1_B LINKBAR1 PFIXTURE",
@@ -319,7 +319,7 @@ fn every_job_error_has_its_message() {
         (
             "** joystick step PRIM many",
             "column 23: a count, a whole number, was expected; many found",
-            "** joystick step PROCESS, or with a COUNT behind it",
+            "** joystick step PROCESS, or with a COUNT after it",
         ),
         (
             "** estop door",
@@ -346,7 +346,7 @@ fn every_job_error_has_its_message() {
         ),
         (
             "** after 5 wait 3",
-            "column 12: this takes time by itself and cannot come behind after",
+            "column 12: this action has its own duration and cannot follow after",
             "** after TICKS, then another line's words behind its **",
         ),
         (

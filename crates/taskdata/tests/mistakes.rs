@@ -125,7 +125,7 @@ fn movetable_beyond_eight_lines_is_reported() {
     9    t        0        0      1      -mtb-   D/A+10rwz"#,
     );
     let expected = r#"
-error: movetables.blk: block 520 (offset 21000), line 16, column 1: a block has 16 lines, 0 to 15; this one goes on
+error: movetables.blk: block 520 (offset 21000), line 16, column 1: a block has 16 lines, 0 to 15; this one has more
         8    t        0        0      1      ----
     ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
     help: begin another block; remarks that begin with %% are not counted
@@ -161,7 +161,7 @@ fn a_block_has_16_lines() {
   256 load"#,
     );
     let expected = r#"
-error: objects/linkbar.blk: block 251 (offset 20000), line 17, column 1: a block has 16 lines, 0 to 15; this one goes on
+error: objects/linkbar.blk: block 251 (offset 20000), line 17, column 1: a block has 16 lines, 0 to 15; this one has more
       256 load
     ^^^^^^^^^^
     help: begin another block; remarks that begin with %% are not counted
@@ -335,7 +335,7 @@ error: objects/linkbar.blk: block 251 (offset 20000), line 6, column 3: there is
 fn unused_directory_entry_is_reported_once() {
     let said = said("objects/linkbar.blk", "253 load ( object    )", "");
     let expected = r#"
-error: objects/linkbar.blk: line 22, column 1: block 253 (offset 20000) is loaded by no directory block; LINKBAR1_BH and 1 more name that are asked for stand there
+error: objects/linkbar.blk: line 22, column 1: block 253 (offset 20000) is loaded by no directory block; LINKBAR1_BH and 1 more name are used and defined there
     BLOCK# 253 OFFSET 20000
     ^^^^^^^^^^^^^^^^^^^^^^^
     help: add `253 load` to block 251 (offset 20000)
@@ -417,7 +417,7 @@ fn blocks_are_numbered_to_999() {
 error: objects/clevis.blk: line 59, column 1: the blocks of an offset are numbered 0 to 999, 1457 found
     BLOCK# 1457 OFFSET 20000
     ^^^^^^^^^^^^^^^^^^^^^^^^
-    help: go on at the next offset, 1000 further
+    help: continue at the next offset, 1000 higher
 "#;
     assert_eq!(said, expected.trim_matches('\n'), "\n{said}");
 }
@@ -458,7 +458,7 @@ fn unusable_trajectory_is_reported() {
 warning: trajectories.blk: block 853 (offset 21000), line 5, column 33: no command can reach the trajectory HOME-PFIX: it ends at the location where it starts
     -traj   HOME-PFIX       lpt     HOME    lpt    HOME
                                     ^^^^^^^^^^^^^^^^^^^
-    help: within one location only depart and approach are flown
+    help: within one location only depart and approach are followed
 "#;
     assert_eq!(said, expected.trim_matches('\n'), "\n{said}");
 }
@@ -491,10 +491,10 @@ fn commands_in_task_data_are_reported() {
   -obj-  S-LINKBAR1_BH"#,
     );
     let expected = r#"
-error: objects/linkbar.blk: block 254 (offset 20000), line 7, column 3: a command is no task data
+error: objects/linkbar.blk: block 254 (offset 20000), line 7, column 3: a command is not task data
       == MOVE -- +0 -- 0 +0 HOME 0 -- 0
       ^^
-    help: commands stand in the job files, data/jobs/NAME.job
+    help: commands belong in the job files, data/jobs/NAME.job
 "#;
     assert_eq!(said, expected.trim_matches('\n'), "\n{said}");
 }
@@ -535,7 +535,7 @@ error: try.job: line 1, column 36: nothing says how grip 1 of LCLEVIS is approac
 error: try.job: line 3, column 23: no trajectory leads from SAFE to PFIXTURE
     == MOVE -- +0 -- 0 +0 PFIXTURE 0 -- 0
                           ^^^^^^^^
-    help: add a trajectory form (VII.6); each is flown from its start to its end only
+    help: add a trajectory form (VII.6); each leads from its start to its end only
 "#,
         ),
         (

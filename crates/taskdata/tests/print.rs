@@ -23,7 +23,7 @@ use taskdata::{
 
 fn named<const N: usize>() -> impl Strategy<Value = Named<N>> {
     let text = proptest::string::string_regex(&format!("[A-Z][A-Z0-9._+/-]{{0,{}}}", N - 1)).unwrap();
-    text.prop_filter("a compiling word is no name", |text| !COMPILING_WORDS.contains(&text.as_str()))
+    text.prop_filter("a compiling word is not a name", |text| !COMPILING_WORDS.contains(&text.as_str()))
         .prop_map(|text| Named { name: Name::new(&text).unwrap(), at: At::default() })
 }
 

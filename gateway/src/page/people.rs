@@ -35,7 +35,7 @@ pub enum PeopleError {
     Open { path: PathBuf, user: u32, found: String },
     #[error("{}:{line}: expected NAME ROLE HASH as rcs-gateway person writes them, found {found:?}", .path.display())]
     Line { path: PathBuf, line: usize, found: String },
-    #[error("{}: {name} is there already; for a new secret, remove the person first", .path.display())]
+    #[error("{}: {name} already exists; for a new secret, remove the person first", .path.display())]
     Known { path: PathBuf, name: PersonName },
     #[error("{}: expected one of its persons, found {name}; rcs-gateway person list prints them", .path.display())]
     Unknown { path: PathBuf, name: PersonName },

@@ -119,7 +119,7 @@ fn lateness(cell: &Cell) -> Text {
             ))
         }
         Cell::NotPublished | Cell::Recorded(_) => {
-            Text::new(Tone::Faint, " how late a tick began is not told here; rcs-run prints it at the end")
+            Text::new(Tone::Faint, " how late a tick began is not shown here; rcs-run prints it at the end")
         }
     }
 }

@@ -127,7 +127,7 @@ impl Model {
                 let words = known(self.terminal.board.number);
                 let (completed, fitting) = complete(&text, self.terminal.library.names(), &words);
                 self.answer = match fitting.len() {
-                    0 => Some("no known value can stand here".to_owned()),
+                    0 => Some("no known value fits here".to_owned()),
                     1 => None,
                     _ => Some(fitting.join(" ")),
                 };

@@ -100,7 +100,7 @@ pub fn sections(
 }
 
 fn look_only() -> Section {
-    let text = " This console only looks: start it with --operate to work on a run.";
+    let text = " This console is read-only: start it with --operate to work on a run.";
     Section::new("keys", vec![Text::new(Tone::Faint, text)])
 }
 
@@ -201,7 +201,7 @@ fn pedestal(memory: &CommonMemory) -> Text {
         Felt::Something | Felt::Nothing | Felt::NotKnown => "holds nothing".to_owned(),
     };
     let angle = status.table_position.map_or_else(
-        || "at no known angle".to_owned(),
+        || "at an unknown angle".to_owned(),
         |tenths| format!("at {:.1} deg", f64::from(tenths) / 10.0),
     );
     let opening = inches(status.grip_size);

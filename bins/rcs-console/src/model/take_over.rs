@@ -49,7 +49,7 @@ pub fn sections(state: TakeOver, picture: &Picture) -> Vec<Section> {
         TakeOver::Asks => lines.extend([
             plain("  Enter   wait until it is finished, then this console commands"),
             plain("  P       PAUSE now, then this console commands; the command ends as replaced"),
-            plain("  Esc     go on looking"),
+            plain("  Esc     keep watching"),
         ]),
         TakeOver::Waits { .. } => lines.extend([
             Text::new(Tone::Marked, "   The end of the command is waited for.".to_owned()),
@@ -61,7 +61,7 @@ pub fn sections(state: TakeOver, picture: &Picture) -> Vec<Section> {
         Text::default(),
         plain("While this console commands, nothing that the workstation controller sends"),
         plain("is executed. `:workstation` gives the command back, with the robot at HOME"),
-        plain("and PAUSE as the last command (IV.4.1); numbers go on from the last one."),
+        plain("and PAUSE as the last command (IV.4.1); numbers continue from the last one."),
         Text::default(),
         plain("At any time: Space sets the knob to 0, h holds Prim, F1 is the E-stop."),
     ]);

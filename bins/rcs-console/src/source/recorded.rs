@@ -53,7 +53,7 @@ impl Recorded {
         let mut damage = log.damage();
         let mut before: Option<Picture> = None;
         for logged in log.ticks() {
-            let damaged = |tick| format!("tick {tick} is damaged; what follows is missing");
+            let damaged = |tick| format!("tick {tick} is damaged; the rest is missing");
             let logged = match logged {
                 Ok(logged) => logged,
                 Err(error) => {

@@ -215,7 +215,7 @@ fn news(model: &Model, source: &dyn Source, about: &About<'_>, look: Look, width
             return line(Tone::Marked, &format!(" {at}: {text}_   {said}"));
         }
         Some(Prompt::Watch(text)) => {
-            return line(Tone::Marked, &format!(" watch, or watch no more: {text}_   Enter  Esc"));
+            return line(Tone::Marked, &format!(" watch, or stop watching: {text}_   Enter  Esc"));
         }
         Some(Prompt::Reason(text)) => {
             return line(Tone::Marked, &format!(" leave the step out, because: {text}_   Enter  Esc"));

@@ -65,10 +65,10 @@ fn do_all_steps(console: &mut Terminal, pause: Duration) {
                 console.wait_for(">1 Ladder");
                 panic!("step {step} is not done, after {done:?}:\n{screen}\n{}", console.screen());
             }
-            if screen.contains("Enter again does it") {
+            if screen.contains("Enter again confirms") {
                 thread::sleep(pause);
                 console.press("\r");
-                console.wait_while(|screen| screen.contains("Enter again does it"), "the warning stays");
+                console.wait_while(|screen| screen.contains("Enter again confirms"), "the warning stays");
                 pressed = Instant::now();
             } else if pressed.elapsed() > again && step != LOOK {
                 console.press("\r");
@@ -136,7 +136,7 @@ fn recording_shows_the_start_up_and_a_taught_point() {
         played.process(output.as_bytes());
         shown.push(played.screen().contents());
     }
-    for picture in ["the robot is at HOME, and Task says finished", "box       WORLD", "generation 1"] {
+    for picture in ["the robot is at HOME, and Task reports finished", "box       WORLD", "generation 1"] {
         assert!(shown.iter().any(|screen| screen.contains(picture)), "{picture} is not in the recording");
     }
     if let Some(file) = file {

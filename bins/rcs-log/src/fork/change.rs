@@ -88,7 +88,7 @@ pub enum RefusedChange {
     Data(String),
     #[error("this is not a line of a job:\n{0}")]
     Line(String),
-    #[error("one {0} was expected, which is no `** load`: `datum` changes task data")]
+    #[error("one {0} other than `** load` was expected: `datum` changes task data")]
     NotOne(&'static str),
     #[error("{}: {source}", path.display())]
     Read { path: PathBuf, source: io::Error },

@@ -52,7 +52,8 @@ impl FromStr for Datum {
         let wrong = || format!("{EXPECTED}; found {text}");
         let (place, value) = text.split_once('=').ok_or_else(wrong)?;
         let (place, value) = (place.trim_end(), value.trim());
-        let number = || value.parse::<i64>().map_err(|_| format!("{EXPECTED}; {value} is no whole number"));
+        let number =
+            || value.parse::<i64>().map_err(|_| format!("{EXPECTED}; {value} is not a whole number"));
         let (place, edit) = match (place.strip_suffix('+'), place.strip_suffix('-')) {
             (Some(place), _) => (place, Edit::Add(number()?)),
             (None, Some(place)) => (place, Edit::Add(-number()?)),

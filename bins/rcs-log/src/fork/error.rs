@@ -45,7 +45,7 @@ pub enum ForkError {
         was: String,
         is: String,
     },
-    #[error("this program ends the run at tick {0}, where the log goes on")]
+    #[error("this program ends the run at tick {0}, but the log continues")]
     Over(u64),
     #[error("the files of the log cannot be unpacked: {0}")]
     Scratch(#[from] io::Error),

@@ -41,7 +41,7 @@ pub struct CampaignArguments {
     /// Draw N branches at random: the tick, and one or several of the interruptions that --interrupt names
     #[arg(long, value_name = "N", conflicts_with_all = ["ticks", "changes", "at", "markdown"])]
     pub random: Option<usize>,
-    /// Draw N branches in which a person leads the robot aside, or moves, exchanges, adds or takes away a part; one in
+    /// Draw N branches in which a person moves the robot aside, or moves, exchanges, adds or removes a part; one in
     /// ten runs to the end of the job
     #[arg(long, value_name = "N", conflicts_with_all = ["ticks", "changes", "at", "states", "random"])]
     pub truth: Option<usize>,
@@ -80,7 +80,7 @@ pub struct CampaignArguments {
     /// are not used
     #[arg(long, value_name = "FILE")]
     pub journal: Option<PathBuf>,
-    /// Print one JSON object a job on standard output, a line each, and nothing else there
+    /// Print one JSON object per job on standard output, one per line, and nothing else there
     #[arg(long)]
     pub json: bool,
     /// Write the table as Markdown, one column per job. In a FILE that has the table already, columns of other jobs

@@ -108,9 +108,11 @@ fn misled(branch: &Branch<'_>) -> Option<String> {
 fn untrue(said: &Holding, held: Option<&str>) -> Option<String> {
     match (said, held) {
         (Holding::Object(said), None) => {
-            Some(format!("E-move says that it holds {}: it holds nothing", said.object))
+            Some(format!("E-move reports that it holds {}: it holds nothing", said.object))
         }
-        (Holding::Nothing, Some(part)) => Some(format!("E-move says that it holds nothing: it holds {part}")),
+        (Holding::Nothing, Some(part)) => {
+            Some(format!("E-move reports that it holds nothing: it holds {part}"))
+        }
         (Holding::Object(_) | Holding::Something | Holding::NotKnown, _) | (Holding::Nothing, None) => None,
     }
 }

@@ -22,7 +22,7 @@ pub fn page(page: Option<&str>, fresh: &[Column]) -> Result<String, String> {
         }),
     };
     let Some((before, old, after)) = parts else {
-        return Err(format!("the page for the table needs the lines {BEGIN} and {END}, found not both"));
+        return Err(format!("the page for the table needs the lines {BEGIN} and {END}, and one is missing"));
     };
     let old = columns(old);
     let of = |job: &str, among: &[Column]| among.iter().position(|column| column.job == job);
@@ -92,6 +92,6 @@ mod tests {
         let rows =
             "| interruption | linkbar | shift |\n|---|---|---|\n| hold | 3/3 |  |\n| pause |  | 2/2 |\n";
         assert_eq!(second, format!("# Title\n\n{BEGIN}\n{rows}{END}\n\nMore.\n"));
-        assert!(page(Some("# Title\n"), &[]).expect_err("no place").contains("found not both"));
+        assert!(page(Some("# Title\n"), &[]).expect_err("no place").contains("one is missing"));
     }
 }

@@ -192,7 +192,7 @@ impl<'a> CampaignReport<'a> {
         let remedied = self.results.iter().filter(|one| one.remedied && one.verdict == Verdict::Done).count();
         let _ = writeln!(
             text,
-            "\n{} judged: {lies} false, {} not sensed; {} went on after the remedy",
+            "\n{} judged: {lies} false, {} not sensed; {} continued after the remedy",
             amount(judged, "confirmation"),
             untrue().count() - lies,
             amount(remedied, "failed job")

@@ -83,7 +83,7 @@ impl Series {
                 .and_then(|(ticks, word)| Some((ticks.parse::<u64>().ok()?, word)))
                 .ok_or_else(|| {
                     Error::Campaign(format!(
-                        "{text}: expected +TICKS:KIND behind the first interruption, as in hold+35:pause, found \
+                        "{text}: expected +TICKS:KIND after the first interruption, as in hold+35:pause, found \
                          +{part}"
                     ))
                 })?;

@@ -304,7 +304,7 @@ fn campaign_resumes_from_its_journal() {
     assert_eq!(fs::read(&path).expect("the journal is there"), whole);
 
     fs::write(&path, [b"{}\n", &whole[..]].concat()).expect("the journal can be written");
-    let error = Journal::open(&path, &campaign).expect_err("a line is no branch").to_string();
+    let error = Journal::open(&path, &campaign).expect_err("a line is not a branch").to_string();
     assert!(error.contains("journal:1: expected a branch of a campaign"), "{error}");
 }
 

@@ -46,7 +46,7 @@ impl Change {
     pub fn add(&mut self, file: &str, text: String) -> Result<(), Error> {
         if fs::symlink_metadata(self.data.join(file)).is_ok() || files::is_file(&self.data.join(file)) {
             let path = self.data.join(file);
-            return Err(Error::New(format!("{} is there already: choose another name", path.display())));
+            return Err(Error::New(format!("{} already exists: choose another name", path.display())));
         }
         self.files.insert(file.to_owned(), Texts { before: String::new(), after: text });
         Ok(())

@@ -105,7 +105,7 @@ impl Wanted {
         let gripped = step.ledge + self.length - self.fingers;
         if gripped < GRIPPED {
             return Err(format!(
-                "a part {:.2} in long comes {:.2} in above the jaws, and the fingers need {:.2} in",
+                "a part {:.2} in long extends {:.2} in above the jaws, and the fingers need {:.2} in",
                 self.length,
                 step.ledge + self.length,
                 self.fingers + GRIPPED

@@ -174,12 +174,12 @@ fn moved(room: &Room, nest: &Nest, old: &PartType, new: &PartType) -> Result<Vec
     let from = Frame { position: seat.position - down * above, ..seat };
     let place = place(nest);
     let rests = room.let_down(new, &from, &down, above + half(old));
-    let rests = rests.ok_or_else(|| format!("it does not go into the nest at {place}"))?;
+    let rests = rests.ok_or_else(|| format!("it does not fit into the nest at {place}"))?;
     let by = rests.position - seat.position;
     let higher = half(old) - half(new) - by.dot(&down);
     if higher.abs() > SAME {
         return Err(format!(
-            "it does not go into the nest at {place}: it would lie {higher:.2} in above its floor"
+            "it does not fit into the nest at {place}: it would lie {higher:.2} in above its floor"
         ));
     }
     Ok(by.map(|inches| f64::from(hundredths(inches)) / 100.0))

@@ -126,7 +126,7 @@ fn is_name(order: &Order<'_>, family: &Family, store: &Store, cell: &CellDescrip
     if let Some(known) = all.into_iter().find(there) {
         let free = (2..).map(|number| format!("{name}{number}")).find(|name| !there(name));
         let free = free.unwrap_or_default();
-        return Err(Error::New(format!("{known} is there already: choose another name, such as {free}")));
+        return Err(Error::New(format!("{known} already exists: choose another name, such as {free}")));
     }
     if cell.vise.program.iter().any(|program| program.name == name) {
         return Err(Error::New(format!("a program of the vise is named {name}: choose another name")));

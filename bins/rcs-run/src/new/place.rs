@@ -69,7 +69,7 @@ pub fn is_name(name: &str, store: &Store) -> Result<(), Error> {
     if there(name) {
         let free = (2..).map(|number| format!("{name}{number}")).find(|name| !there(name));
         let free = free.unwrap_or_default();
-        return Err(Error::New(format!("{name} is there already: choose another name, such as {free}")));
+        return Err(Error::New(format!("{name} already exists: choose another name, such as {free}")));
     }
     Ok(())
 }

@@ -177,8 +177,9 @@ impl<'a> Sizes<'a> {
         let first = lines.first_mut().filter(|line| line.system == System::Tool);
         let first =
             first.ok_or_else(|| unknown(format!("{} does not begin with a line t", table.name.name)))?;
-        let place = place(self.cell, self.family, grip)
-            .ok_or_else(|| unknown(format!("{} is no tray, vise or pedestal", grip.place.name.name)))?;
+        let place = place(self.cell, self.family, grip).ok_or_else(|| {
+            unknown(format!("{} is not a tray, a vise or a pedestal", grip.place.name.name))
+        })?;
         let (part, own) = self.family.part_of(name).ok_or_else(|| unknown("of no part".to_owned()))?;
         let [x, _, z] = first.values.map(|value| f64::from(value) / 100.0);
         let by = self.shift(place, part, own, [x, z]);
@@ -265,7 +266,7 @@ impl Numbers for Sizes<'_> {
         let program = &self.step.program;
         let last = self.cell.vise.program.last().map_or("", |program| program.name.as_str());
         change.add_table(CELL, "vise.program", &format!("name = \"{last}\""), &table_of_program(program))?;
-        let step = if self.step.is_new { "a step that is cut for it" } else { "a step that is there" };
+        let step = if self.step.is_new { "a step cut for it" } else { "an existing step" };
         let [back, depth, ledge] = [program.back, program.depth, program.ledge].map(Length);
         let place = format!("back {back}, depth {depth:.4}, ledge {ledge}");
         let [open, partial] = [program.opening_open, program.opening_partial].map(Length);

@@ -136,7 +136,7 @@ fn tray_at_another_point_passes_its_trial() {
         assert!(diff.lines().any(|found| found == line), "{line} is not in\n{diff}");
     }
     let inside = super::tray::make("UNIT_3", [-50.0, -10.0], "UNIT_1", (&store, &cell, &data()));
-    assert!(inside.err().is_some_and(|error| error.to_string().contains("would stand in UNIT_2")));
+    assert!(inside.err().is_some_and(|error| error.to_string().contains("would overlap UNIT_2")));
     let unknown = super::tray::make("UNIT_3", [0.0, 0.0], "UNIT_9", (&store, &cell, &data()));
     assert!(unknown.err().is_some_and(|error| error.to_string().contains("no tray is named UNIT_9")));
 }

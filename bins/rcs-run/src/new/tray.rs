@@ -95,7 +95,7 @@ fn stands_alone([x, y]: [f64; 2], cell: &CellDescription) -> Result<(), Error> {
     other.map_or(Ok(()), |other| {
         let unit = &other.unit;
         Err(Error::New(format!(
-            "the tray would stand in {unit}: {} are expected between them, in x or y",
+            "the tray would overlap {unit}: {} are expected between them, in x or y",
             Length(side)
         )))
     })

@@ -80,7 +80,7 @@ pub fn put(
 
 /// Number of lines up to the end of the block's text, if a form of `form` lines and a blank line fit after it.
 fn end_of(text: &str, block: Option<u32>, form: usize) -> Result<usize, String> {
-    let block = block.ok_or("there is no form of that name: say with --block where it is to stand")?;
+    let block = block.ok_or("there is no form of that name: name its block with --block")?;
     let source = Source { name: String::new(), text: text.into() };
     let (blocks, _) = blocks(0, &source);
     let known: Vec<_> = blocks.iter().map(|block| block.number.number.to_string()).collect();

@@ -344,7 +344,7 @@ impl fmt::Display for Refusal {
                 write!(f, "expected a rate of 0.000001 to 1, found {millionths} millionths")
             }
             Self::EmptyWindow { from, until } => {
-                write!(f, "expected `until` behind `from`, found {from} to {until}: there is no tick in it")
+                write!(f, "expected `until` after `from`, found {from} to {until}: there is no tick in it")
             }
             Self::NoLength { kind } => write!(
                 f,

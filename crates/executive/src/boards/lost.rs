@@ -24,11 +24,11 @@ pub enum SplitError {
         board: Board,
         source: std::io::Error, // the error of the operating system
     },
-    #[error("{board} ended before the first tick ({status}); its reason stands above")]
+    #[error("{board} ended before the first tick ({status}); its reason is printed above")]
     Ended { board: Board, status: ExitStatus },
     #[error("{board} (process {pid}) cannot take part: {difference}")]
     Different { board: Board, pid: u32, difference: &'static str },
-    #[error("{} did not come within {} s", list(.missing), .wait_limit.as_secs())]
+    #[error("{} did not start within {} s", list(.missing), .wait_limit.as_secs())]
     Missing {
         missing: Vec<Board>,
         wait_limit: Duration, // time for which board 0 waited for them

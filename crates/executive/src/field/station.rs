@@ -50,7 +50,7 @@ struct Shared {
 struct Traffic {
     connections: AtomicUsize,
     refused: AtomicU64,
-    garbled: AtomicU64, // connections that were closed because of bytes that are no request
+    garbled: AtomicU64, // connections that were closed because of bytes that are not a request
     requests: AtomicU64,
 }
 

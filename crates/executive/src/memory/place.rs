@@ -147,7 +147,7 @@ pub(super) fn own_directory(path: PathBuf) -> Result<(), SharedMemoryError> {
     }
     match found.is_dir() {
         true => alone(&path, &found),
-        false => Err(SharedMemoryError::NotOurs { path, what: "it is no directory".to_owned() }),
+        false => Err(SharedMemoryError::NotOurs { path, what: "it is not a directory".to_owned() }),
     }
 }
 
@@ -157,7 +157,7 @@ fn ours(path: &Path, found: &Metadata) -> Result<(), SharedMemoryError> {
         true => alone(path, found),
         false => Err(SharedMemoryError::NotOurs {
             path: path.to_owned(),
-            what: "it is no regular file".to_owned(),
+            what: "it is not a regular file".to_owned(),
         }),
     }
 }

@@ -240,7 +240,7 @@ impl Port {
             other => unusable(io::Error::from(other).to_string()),
         })?;
         if !rustix::termios::isatty(&bytes) {
-            return Err(unusable("it is no terminal device".into()));
+            return Err(unusable("it is not a terminal device".into()));
         }
         let name = path.to_str().ok_or_else(|| unusable("its name is not UTF-8".into()))?;
         let mut lines = TTYPort::open(&settings.builder(name)).map_err(|error| match error.kind {

@@ -68,7 +68,7 @@ impl FromStr for SerialSettings {
                 Some(("baud", baud)) => {
                     settings.baud =
                         baud.parse().ok().filter(|baud| (1..=4_000_000).contains(baud)).ok_or_else(|| {
-                            format!("baud is a number of bits a second, such as 9600; found {baud}")
+                            format!("baud is a number of bits per second, such as 9600; found {baud}")
                         })?;
                 }
                 Some(("parity", "none")) => settings.parity = Parity::None,

@@ -137,7 +137,7 @@ fn every_wrong_file_is_refused_with_its_line() {
             12,
             "expected another address or unit than arm",
         ),
-        (with_input("\"beam.9\" = { at = \"arm input 9.0\" }"), 16, "it is no input"),
+        (with_input("\"beam.9\" = { at = \"arm input 9.0\" }"), 16, "it is not an input"),
         (
             with_input("\"tool.close\" = { at = \"arm input 9.0\" }"),
             16,

@@ -76,7 +76,7 @@ pub fn placed(plan: &Plan, below: &SubtaskStatus, ledger: Option<&Ledger>) -> Pl
 }
 
 /// True if a held object comes from another place than the source of a new command. The ledger has the place if it is
-/// about the object; otherwise the carried object has it (docs/design/recovery.md "Data base").
+/// about the object; otherwise the carried object has it (docs/design/recovery.md "Database").
 #[must_use]
 pub fn is_from_elsewhere(
     command: &HwsCommand,

@@ -164,7 +164,7 @@ impl<'a> Scanner<'a> {
         let rest = &self.text[self.at..];
         let Some(end) = rest.find('\'') else {
             self.at = self.text.len();
-            return Err(self.wrong("`'` behind the value"));
+            return Err(self.wrong("`'` after the value"));
         };
         self.at += end + 1;
         Ok(rest[..end].trim_end_matches(' '))
@@ -234,7 +234,7 @@ mod tests {
             ),
             (
                 "UPDATE EQUIP_ITEM_ACTION SET (DEVICE) = ('A",
-                "`'` behind the value expected at character 44, found the end",
+                "`'` after the value expected at character 44, found the end",
             ),
             (
                 "UPDATE EQUIP_ITEM_ACTION SET (DEVICE) = ('A') WHERE ITEM_NBR = '1' OR",

@@ -73,11 +73,11 @@ impl Refusal {
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Protocol => "the bytes are no command",
+            Self::Protocol => "the bytes are not a command",
             Self::Sequence => "the connection is not in the state for this command",
             Self::Statement => "the statement is not known",
             Self::Value => "the statement names no item or no place",
-            Self::Store => "the data base cannot keep it",
+            Self::Store => "the database cannot keep it",
         })
     }
 }

@@ -89,7 +89,7 @@ pub fn put_pulse(out: &mut Vec<u8>, tick: u64) {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
-    #[error("a length of {HEAD} to {MAX_SIZE} was expected behind the address {address:05X}, found {found}")]
+    #[error("a length of {HEAD} to {MAX_SIZE} was expected after the address {address:05X}, found {found}")]
     Length { address: u32, found: u16 },
     #[error("the number of a tick was expected in a pulse, 8 bytes, found {0}")]
     Pulse(usize),
@@ -158,7 +158,7 @@ mod tests {
     fn impossible_length_is_refused_at_once() {
         for (low, high, found) in [(7, 0, 7), (1, 16, 4097)] {
             let error = Frame::first(&[0, 0x60, 0x0F, 0, low, high]).unwrap_err();
-            let text = format!("a length of 8 to 4096 was expected behind the address F6000, found {found}");
+            let text = format!("a length of 8 to 4096 was expected after the address F6000, found {found}");
             assert_eq!(error.to_string(), text);
         }
     }

@@ -181,14 +181,14 @@ fn invalid_layouts_are_reported() {
     );
     let mut bytes = CommandLayout::encode(&flip(7));
     bytes[12..16].copy_from_slice(b"FLOP");
-    assert_eq!(said(CommandLayout::decode(&bytes).unwrap_err().into()), "FLOP is no word of command");
+    assert_eq!(said(CommandLayout::decode(&bytes).unwrap_err().into()), "FLOP is not a word of command");
     bytes[13] = 0x9C;
     assert!(
         said(CommandLayout::decode(&bytes).unwrap_err().into()).ends_with("for command, found 9C at byte 13")
     );
     let mut bytes = Status::default().encode();
     bytes[22..24].copy_from_slice(&[0xFF, 1]);
-    assert_eq!(said(Status::decode(&bytes).unwrap_err()), "511 is no code of status-code");
+    assert_eq!(said(Status::decode(&bytes).unwrap_err()), "511 is not a code of status-code");
     let idle = PedestalStatus { echo: 7, ..PedestalStatus::default() };
     let idle = Status { status: idle, ..Status::default() }.encode();
     assert_eq!(
@@ -197,7 +197,7 @@ fn invalid_layouts_are_reported() {
     );
     let mut bytes = SensorsLayout::encode(&PedestalSensors::default());
     bytes[8] = 2;
-    assert_eq!(said(SensorsLayout::decode(&bytes).unwrap_err().into()), "2 is no code of limit+");
+    assert_eq!(said(SensorsLayout::decode(&bytes).unwrap_err().into()), "2 is not a code of limit+");
 }
 
 #[test]

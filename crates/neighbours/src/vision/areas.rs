@@ -150,7 +150,7 @@ mod tests {
         assert_eq!(said(0, 3), "1 (not ready) or 2 (ready) was expected for vision-ready-input, found 3");
         assert_eq!(said(2, 0), "1 (not ready) or 2 (ready) was expected for vision-ready-output, found 0");
         assert_eq!(said(4, 14), "12 was expected for response-byte-count, found 14");
-        assert_eq!(said(8, 99), "99 is no code of status");
+        assert_eq!(said(8, 99), "99 is not a code of status");
         let short = Areas::decode(&[2; 14]).unwrap_err().to_string();
         assert_eq!(short, "a response of 18 bytes was expected, found 14");
     }

@@ -234,7 +234,7 @@ mod tests {
         assert_eq!(many, "at most 38 parts were expected in a picture, found 39");
         let endless = said(|bytes| bytes[28..36].copy_from_slice(&f64::INFINITY.to_le_bytes()));
         assert_eq!(endless, "part 1: a finite number was expected for middle");
-        assert_eq!(said(|bytes| bytes[233] = 3), "part 2: 3 is no code of points");
+        assert_eq!(said(|bytes| bytes[233] = 3), "part 2: 3 is not a code of points");
     }
 
     proptest! {

@@ -72,9 +72,9 @@ mod tests {
             decode(&bytes).unwrap_err().to_string()
         };
         assert_eq!(said(0, 11), "12 was expected for request-byte-count, found 11");
-        assert_eq!(said(4, 0), "0 is no code of picture");
-        assert_eq!(said(4, 7), "7 is no code of picture");
-        assert_eq!(said(13, 1), "257 is no code of variation");
+        assert_eq!(said(4, 0), "0 is not a code of picture");
+        assert_eq!(said(4, 7), "7 is not a code of picture");
+        assert_eq!(said(13, 1), "257 is not a code of variation");
         assert_eq!(decode(&[0; 13]).unwrap_err().to_string(), "a request of 14 bytes was expected, found 13");
     }
 

@@ -53,7 +53,7 @@ impl Codec<'_, ()> for Length {
 pub enum CommandError {
     #[error(transparent)]
     Layout(#[from] LayoutError),
-    #[error("a number from 1 on was expected for command-#-in, found 0")]
+    #[error("a number of at least 1 was expected for command-#-in, found 0")]
     NoNumber, // 0 means no command
     #[error("the name of a command was expected for command-16, found blanks")]
     NoCommand,
@@ -137,7 +137,7 @@ pub(super) mod tests {
             "a command of 126 bytes was expected, found 125"
         );
         assert_eq!(spoilt(4, &[9, 0]), "0 or 126 was expected for cmd-length<w, found 9");
-        assert_eq!(spoilt(6, &[0, 0]), "a number from 1 on was expected for command-#-in, found 0");
+        assert_eq!(spoilt(6, &[0, 0]), "a number of at least 1 was expected for command-#-in, found 0");
         assert_eq!(
             spoilt(20, &[b' '; 16]),
             "the name of a command was expected for command-16, found blanks"

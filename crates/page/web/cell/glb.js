@@ -17,7 +17,7 @@ const GAMMA = 1 / 2.2;
  */
 export function readGlb(file) {
   const view = new DataView(file.buffer, file.byteOffset, file.byteLength);
-  if (view.getUint32(0, true) !== MAGIC) throw new Error('A mesh of the log is no glTF file.');
+  if (view.getUint32(0, true) !== MAGIC) throw new Error('A mesh of the log is not a glTF file.');
   const jsonSize = view.getUint32(12, true);
   const json = JSON.parse(new TextDecoder().decode(file.subarray(20, 20 + jsonSize)));
   const binary = 20 + jsonSize + 8;

@@ -2,7 +2,7 @@
 
 const TEXT = new TextDecoder();
 
-/** A text from UTF-8. Bytes that are no UTF-8 become replacement characters. @param {Uint8Array} bytes */
+/** A text from UTF-8. Bytes that are not UTF-8 become replacement characters. @param {Uint8Array} bytes */
 export function textOf(bytes) {
   return TEXT.decode(bytes);
 }

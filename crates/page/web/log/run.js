@@ -313,7 +313,7 @@ function commandsOfTask(bars, track) {
   });
 }
 
-/** Positions further apart are no movement of the robot but a new start of the link, in/s. */
+/** Positions further apart are a new start of the link and not a motion of the robot, in/s. */
 const JUMP = 60;
 
 /** Speed of the tool point over time. */

@@ -124,7 +124,9 @@ impl fmt::Display for CellEvent {
             }
             Self::Dropped { part, hand } => write!(f, "{part} is lost from {hand}"),
             Self::ForcedOut { part } => write!(f, "{part} is forced out of the vise"),
-            Self::GripperFell { gripper } => write!(f, "{gripper} falls: it was let go over no holster"),
+            Self::GripperFell { gripper } => {
+                write!(f, "{gripper} falls: it was released away from its holster")
+            }
             Self::GripperTorn { gripper } => {
                 write!(f, "{gripper} is torn off the quick change by its holster")
             }

@@ -85,7 +85,7 @@ pub enum WorkstationError {
     NoVise { location: String, known: String },
     #[error("the vise has no program {name}; the cell description has {}", list(.known))]
     UnknownProgram { name: String, known: Vec<String> },
-    #[error("{name} is no tool; the cell description has {}", list(.known))]
+    #[error("{name} is not a tool; the cell description has {}", list(.known))]
     NoTool { name: String, known: Vec<String> },
     #[error("nothing can be machined at {location}; the cell description has machines at {}", list(.known))]
     NoMachine {

@@ -19,9 +19,9 @@ const FAR: f64 = 1e6; // more steps than between the two limit switches
 pub enum TableRefusal {
     #[error("the rotary table controller has no power: table power on comes first")]
     NoPower,
-    #[error("the mode switch of the rotary table controller stands at PROG: table mode manual comes first")]
+    #[error("the mode switch of the rotary table controller is at PROG: table mode manual comes first")]
     NotManual,
-    #[error("the rotary table turns: ask again when it stands")]
+    #[error("the rotary table turns: ask again when it has stopped")]
     Turns,
 }
 

@@ -74,7 +74,7 @@ impl fmt::Display for RobotEvent {
         match self {
             Self::Sinks(cause) => write!(f, "{cause}: hydraulics off, the arm sinks"),
             Self::WillJump => f.write_str("hydraulics on: the arm will jump"),
-            Self::Jumped { inches } => write!(f, "the hand has jumped by {inches:.1} in and stands"),
+            Self::Jumped { inches } => write!(f, "the hand has jumped by {inches:.1} in and is at rest"),
             Self::VerticalMotions => f.write_str("two short vertical motions"),
             Self::Interrupted => f.write_str("interrupted"),
             Self::GoesHome => f.write_str("moves directly to HOME"),

@@ -19,13 +19,13 @@ pub enum Refusal {
     NoFault,
     #[error("the HYDRAULICS keyswitch is not at ENABLE: hydraulics enable comes first")]
     NotEnabled,
-    #[error("the HYDRAULICS keyswitch is there already")]
+    #[error("the HYDRAULICS keyswitch is already in this position")]
     KeyIsThere,
     #[error("the robot's hydraulics are off: manual on comes first")]
     NoPressure,
     #[error("the robot's hydraulics are on already")]
     PressureIsOn,
-    #[error("the robot moves: wait until it stands")]
+    #[error("the robot moves: wait until it has stopped")]
     Moving,
     #[error("not all axes are aligned: align comes first")]
     NotAligned,

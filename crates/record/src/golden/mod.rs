@@ -83,7 +83,7 @@ pub struct Golden(Content);
 pub enum GoldenError {
     #[error("{}: {source}", path.display())]
     File { path: PathBuf, source: std::io::Error },
-    #[error("{} is no golden run of this format: {what}", path.display())]
+    #[error("{} is not a golden run of this format: {what}", path.display())]
     NotAGolden { path: PathBuf, what: String },
     #[error(
         "the golden was made with layout {found}, this program has layout {expected}: make it again from a run"

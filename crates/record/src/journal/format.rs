@@ -62,7 +62,7 @@ pub type Identity = BTreeMap<String, String>;
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
-    #[error("it is no journal: it does not begin with RCSJRNL")]
+    #[error("it is not a journal: it does not begin with RCSJRNL")]
     Foreign,
     #[error("it is a journal in version {found} of the format, expected {VERSION}")]
     Version { found: u32 },

@@ -48,7 +48,7 @@ pub enum JournalError {
     Read { path: PathBuf, source: io::Error },
     #[error("the journal {} is being written by another run: name another file with --journal", path.display())]
     InUse { path: PathBuf },
-    #[error("{} is no journal and stays as it is: name another file with --journal", path.display())]
+    #[error("{} is not a journal and was not changed: name another file with --journal", path.display())]
     OtherFile { path: PathBuf },
     #[error("the journal {} cannot be used: {source}", path.display())]
     Format { path: PathBuf, source: FormatError },
@@ -89,7 +89,7 @@ struct State {
 impl Journal {
     /// Begin a journal, with `first` as its first entry. An earlier one at this path is replaced as a whole. If its
     /// run has not ended, and `first` does not continue it, it is kept under another name ([`kept_before`]). Fails if
-    /// the file belongs to another run, is no journal, or cannot be created.
+    /// the file belongs to another run, is not a journal, or cannot be created.
     pub fn start(path: &Path, identity: &Identity, first: Option<&Entry>) -> Result<Self, JournalError> {
         let failed = |source| JournalError::Create { path: path.to_owned(), source };
         if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {

@@ -139,7 +139,7 @@ impl<'c> State<'c> {
         (random && !seen && !nested).then(|| Refused {
             word: source.to_string(),
             message: format!("{object} lies anywhere {sector}{unit}, and no view finds it there"),
-            help: "add a view with en 1 (-vu-, VII.7.6), or write x, y and angle behind the ** tray line",
+            help: "add a view with en 1 (-vu-, VII.7.6), or write x, y and angle at the end of the ** tray line",
         })
     }
 }
@@ -149,7 +149,7 @@ impl Jaws<'_> {
     fn refuse(&self, part: &PartType) -> Option<String> {
         let (opening, how) = match self.opening {
             ViseOpening::Close => {
-                return Some(format!("the vise is closed when {} comes", part.name));
+                return Some(format!("the vise is closed when {} arrives", part.name));
             }
             ViseOpening::Open => (self.program.opening_open, "open"),
             ViseOpening::Partial => (self.program.opening_partial, "partially closed"),

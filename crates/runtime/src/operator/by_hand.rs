@@ -79,20 +79,21 @@ pub fn check_confirmation(by: Support, memory: &CommonMemory, data: &TaskData<'_
         return Err("the gripper holds nothing: there is nothing to confirm".to_owned());
     }
     let Some(at) = below.at else {
-        return Err("the robot is at no known place: move it to one first".to_owned());
+        return Err("the robot is not at a known place: move it to one first".to_owned());
     };
     let held =
         below.held.object().map_or_else(|| "what the gripper may hold".to_owned(), |held| held.to_string());
     match (by, support::TaskSupport::of_place(below, None, data)) {
-        (Support::Clamped, support::TaskSupport::Jaws) => {
-            Ok(format!("{held} counts as clamped at {} as long as the robot stands there", at.site.location))
-        }
+        (Support::Clamped, support::TaskSupport::Jaws) => Ok(format!(
+            "{held} is treated as clamped at {} as long as the robot stands there",
+            at.site.location
+        )),
         (Support::Clamped, _) => Err(format!(
             "the robot does not hold an object at a vise: {held} at {}; hold it and send `confirm by hand`",
             at.site.location
         )),
         (Support::ByHand, _) => Ok(format!(
-            "{held} counts as held by hand as long as the robot stands at {}: POSITION opens the gripper",
+            "{held} is treated as held by hand as long as the robot stands at {}: POSITION opens the gripper",
             at.site.location
         )),
     }
@@ -117,7 +118,7 @@ pub fn state(memory: &CommonMemory) -> String {
         Felt::Something | Felt::Nothing | Felt::NotKnown => "holds nothing".to_owned(),
     };
     let angle = status.table_position.map_or_else(
-        || "at no known angle".to_owned(),
+        || "at an unknown angle".to_owned(),
         |tenths| format!("at {:.1} degrees", f64::from(tenths) / 10.0),
     );
     let last = match memory.subtask.pedestal.command {

@@ -244,7 +244,7 @@ impl Operator {
             self.take_command(who)?;
             if around.loading && request.is_of_the_job() {
                 return Err(
-                    "a block is being checked, which counts from the next command on: ask again".to_owned()
+                    "a block is being checked, and takes effect at the next command: ask again".to_owned()
                 );
             }
             if self.awaiting.is_some() {
@@ -347,7 +347,7 @@ impl Operator {
     fn take_command(&mut self, who: &str) -> Result<(), String> {
         match &self.commander {
             Some(other) if other != who => Err(format!(
-                "{other} commands this run; stops are for everybody, the rest when it says `leave`"
+                "{other} commands this run: everybody may stop it; other requests wait until it sends `leave`"
             )),
             _ => {
                 self.commander = Some(who.to_owned());

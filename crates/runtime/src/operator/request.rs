@@ -136,7 +136,7 @@ impl Request {
         // The commands of Task have capital letters, the lines for the cell small ones.
         if job::is_command(line) || first.starts_with(|first: char| first.is_ascii_uppercase()) {
             let read = job::own_command(line, store).map_err(|error| error.to_string())?;
-            let Step::Command(command) = read.step else { return Err(format!("{line} is no command")) };
+            let Step::Command(command) = read.step else { return Err(format!("{line} is not a command")) };
             return Ok(Self::Command(read.text, command));
         }
         if !first.is_empty() && LineVerb::from_text(first).is_none() {

@@ -203,7 +203,7 @@ impl Terminals {
         written::stands(ProcessId::Task, memory)?;
         self.shown.db_done = on;
         Ok(if on {
-            "Task takes what it asks of the Data System as done: the data base may lack moves from now on"
+            "Task treats its requests to the Data System as done: the database may lack moves from now on"
         } else {
             "Task waits for the Data System"
         }
@@ -223,9 +223,7 @@ impl Terminals {
     fn initialize(&mut self, memory: &CommonMemory) -> Result<String, String> {
         let command = memory.subtask.emove.command;
         if !matches!(command, EmoveVerb::None | EmoveVerb::Pause) {
-            return Err(format!(
-                "E-move executes {command}: PAUSE first, since ROBOT-INIT forgets the motion"
-            ));
+            return Err(format!("E-move executes {command}: PAUSE first, since ROBOT-INIT drops the motion"));
         }
         self.shown.robot_init = successor(self.shown.robot_init);
         if self.shown.is_stopped(ProcessId::Prim.board()) {
@@ -237,10 +235,10 @@ impl Terminals {
 
 const fn what_stops(board: u8) -> &'static str {
     match board {
-        0 => "there is no pulse: no process is stepped, and the robot stands where it was sent last",
-        2 => "E-move and Prim are stopped: the robot stands where it was sent last",
-        4 => "T3 Interface is stopped: the robot gets no frame, and stands where it was sent last",
-        6 => "Task and Subtask are stopped; what E-move has begun goes on",
+        0 => "there is no pulse: no process is stepped, and the robot holds its last commanded position",
+        2 => "E-move and Prim are stopped: the robot holds its last commanded position",
+        4 => "T3 Interface is stopped: the robot gets no frame, and holds its last commanded position",
+        6 => "Task and Subtask are stopped; what E-move has started continues",
         _ => "Quick Change and the grippers are stopped: valves stay as they are",
     }
 }
@@ -402,7 +400,7 @@ mod tests {
         assert!(ask(held, &memory).unwrap_err().contains("board 8"));
         memory.grip.status.felt = Felt::Something;
         (memory.grip.status.initialized, memory.grip.status.position) = (true, 20);
-        assert!(ask(held, &memory).unwrap_err().contains("they stand at 0.20 in"));
+        assert!(ask(held, &memory).unwrap_err().contains("they are at 0.20 in"));
         memory.grip.status.position = 400;
         assert_eq!(ask(held, &memory).unwrap(), "emove.estimates.held was NONE, is LINKBAR1_BH 2");
         memory.grip.header.republished = true;

@@ -100,7 +100,7 @@ fn is_felt(variable: Variable, memory: &CommonMemory) -> Result<(), String> {
     match felt {
         Felt::Something => Ok(()),
         Felt::Nothing => {
-            Err(format!("{hand} holds nothing by its sensors; only what they feel can be named"))
+            Err(format!("{hand} holds nothing by its sensors; only an object that they sense can be named"))
         }
         Felt::NotKnown => Err(format!(
             "the sensors of {hand} show no grasp yet: run its process (board {board}), calibrated, fingers at rest"
@@ -115,7 +115,7 @@ fn is_so_wide(object: &Name16, grip: i32, memory: &CommonMemory, data: &TaskData
     match gripper.opening(memory) {
         Some(opening) if gripper.grips(opening, size) => Ok(()),
         opening => Err(format!(
-            "fingers that hold {object} {grip} were expected (grasp size {:.2} in); they stand at {:.2} in",
+            "fingers that hold {object} {grip} were expected (grasp size {:.2} in); they are at {:.2} in",
             inches(size),
             inches(opening.unwrap_or_default())
         )),

@@ -137,7 +137,7 @@ impl Run {
             let kind = Kind::of_code(event.code());
             let is_alarm =
                 matches!(kind, Some(Kind::EmergencyStop | Kind::Power | Kind::Lost | Kind::Device));
-            // The end of a coupler's trouble is no alarm, but withdraws one.
+            // The end of a coupler's trouble is not an alarm; it withdraws one.
             if is_alarm || matches!(event, Event::Field(_)) {
                 self.alarms.line(tick.next(), event.source(), event.code(), &event.to_string());
             }

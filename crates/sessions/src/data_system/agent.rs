@@ -67,7 +67,7 @@ impl fmt::Display for Remark {
             Self::Garbled(why) => {
                 write!(
                     f,
-                    "{DATA_SYSTEM_STATUS} cannot be read, the Data System counts as not answering: {why}"
+                    "{DATA_SYSTEM_STATUS} cannot be read, the Data System is treated as not answering: {why}"
                 )
             }
             Self::Silent { command_id, patience } => write!(

@@ -94,14 +94,14 @@ pub struct Visit {
 pub enum StoreError {
     #[error("{}: {source}", .file.display())]
     Sqlite { file: PathBuf, source: rusqlite::Error },
-    #[error("{}: a data base of items was expected, this one belongs to another program", .file.display())]
+    #[error("{}: a database of items was expected, this one belongs to another program", .file.display())]
     Foreign { file: PathBuf },
     #[error(
         "{}: another run or Data System uses this database: end it, or name another database",
         .file.display()
     )]
     InUse { file: PathBuf },
-    #[error("{}: the file beside it that shows who uses it cannot be locked: {source}", .file.display())]
+    #[error("{}: its lock file cannot be locked: {source}", .file.display())]
     Lock { file: PathBuf, source: io::Error },
     #[error("{}: tables of version {VERSION} were expected, found version {found}", .file.display())]
     Version {
@@ -435,7 +435,7 @@ mod tests {
         Connection::open(&other).unwrap().execute_batch("CREATE TABLE mine (a)").unwrap();
         assert!(matches!(Store::open(&other), Err(StoreError::Foreign { .. })));
         let text = place.path().join("text");
-        std::fs::write(&text, "not a data base, but long enough to be looked at as if it were one").unwrap();
+        std::fs::write(&text, "not a database, but long enough to be looked at as if it were one").unwrap();
         assert!(matches!(Store::open(&text), Err(StoreError::Sqlite { .. })));
         assert!(matches!(Store::open(place.path()), Err(StoreError::Sqlite { .. })));
     }

@@ -237,7 +237,7 @@ fn check_origin(headers: &HeaderMap, origins: &[Origin]) -> Result<(), Refusal> 
     match headers.get_all(header::ORIGIN).iter().find(|origin| !is_allowed(origin)) {
         None => Ok(()),
         Some(origin) => {
-            let origin = origin.to_str().unwrap_or("bytes that are no text");
+            let origin = origin.to_str().unwrap_or("bytes that are not text");
             let why = format!(
                 "pages of {origin} may not connect; to allow them, start with --live-origin ORIGIN\n"
             );

@@ -24,7 +24,7 @@ pub enum PeerError {
     Line { address: Address, source: io::Error },
     #[error("{address}: {source}")]
     Session { address: Address, source: SessionError },
-    #[error("nothing has come from the controller for {} s", .0.as_secs())]
+    #[error("nothing was received from the controller for {} s", .0.as_secs())]
     Silent(Duration),
     #[error("the controller has closed the connection")]
     Closed,

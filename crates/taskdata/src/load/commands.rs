@@ -98,7 +98,7 @@ impl Commands {
                     problems.error("command.line", *at, why.to_string());
                 }
             } else if !(text.is_empty() || text.starts_with(['%', '('])) {
-                let help = format!("a block at offset {OFFSET} holds commands; forms stand at other offsets");
+                let help = format!("a block at offset {OFFSET} holds commands; forms are at other offsets");
                 problems.error_help(
                     "command.line",
                     *at,

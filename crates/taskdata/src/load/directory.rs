@@ -90,20 +90,20 @@ fn note(fault: BlockFault, at: At, problems: &mut Problems) {
                 "block.number",
                 at,
                 format!("the blocks of an offset are numbered 0 to {LAST_BLOCK}, {number} found"),
-                "go on at the next offset, 1000 further",
+                "continue at the next offset, 1000 higher",
             );
             problems.expected(format!("from 0 to {LAST_BLOCK}"));
         }
         BlockFault::NoHeader => problems.error_help(
             "block.header",
             at,
-            "this text stands before the first block",
+            "this text is before the first block",
             "a block begins with a header like `BLOCK# 619 OFFSET 21000`; remarks on the file begin with %%",
         ),
         BlockFault::TooManyLines => problems.error_help(
             "block.lines",
             at,
-            format!("a block has {BLOCK_LINES} lines, 0 to 15; this one goes on"),
+            format!("a block has {BLOCK_LINES} lines, 0 to 15; this one has more"),
             "begin another block; remarks that begin with %% are not counted",
         ),
         BlockFault::TooWide(columns) => {

@@ -87,10 +87,10 @@ impl Orphans {
             }
             match &orphan.needed[..] {
                 [] => {}
-                [name] => message += &format!("; {name} is asked for and stands there"),
+                [name] => message += &format!("; {name} is used and defined there"),
                 [name, others @ ..] => {
                     let others = amount(others.len(), "more name");
-                    message += &format!("; {name} and {others} that are asked for stand there");
+                    message += &format!("; {name} and {others} are used and defined there");
                 }
             }
             let severity = if orphan.needed.is_empty() { Severity::Warning } else { Severity::Error };
@@ -176,7 +176,7 @@ impl Orphans {
                 let severity = if orphan.needed.is_empty() { Severity::Warning } else { Severity::Error };
                 problems.push(severity, "block.again", line.at, message, None);
                 problems.elsewhere(
-                    format!("is {found} meant? No directory block loads it; its header is in"),
+                    format!("did you mean {found}? No directory block loads it; its header is in"),
                     header,
                 );
             }

@@ -77,8 +77,8 @@ impl<'a> Parser<'a, '_> {
                 self.problems.error_help(
                     "form.command",
                     word.at,
-                    "a command is no task data",
-                    "commands stand in the job files, data/jobs/NAME.job",
+                    "a command is not task data",
+                    "commands belong in the job files, data/jobs/NAME.job",
                 );
                 Err(Skip)
             }

@@ -25,7 +25,7 @@ pub const MANUAL: Step = Step {
     how: "One hand covers the E-stop of the control panel.",
     warning: "the arm becomes live and jumps by several inches, its end by about 10 in",
     show: Show::Hand,
-    ..state("", "MANUAL is on: the hand has jumped and stands", &[Condition::Reached("manual")])
+    ..state("", "MANUAL is on: the hand has jumped and is at rest", &[Condition::Reached("manual")])
 };
 
 pub const ALIGN: Step = Step {
@@ -39,17 +39,17 @@ pub const ALIGN: Step = Step {
 
 pub const AUTO: Step = Step {
     ask: &[Line("panel auto")],
-    warning: "the arm jumps again and moves directly to HOME, whatever is in its way",
+    warning: "the arm jumps again and moves directly to HOME, even if something is in its way",
     show: Show::Hand,
     ..state("", "AUTO: the robot has moved to HOME", &[Condition::Reached("auto, at HOME")])
 };
 
 pub const CYCLE_START: Step = Step {
     ask: &[Line("panel cycle-start")],
-    how: "If a WD warning comes: the procedure for it stands in the list.",
+    how: "If a WD warning appears: its procedure is in the list.",
     warning: "the robot makes two short vertical motions by itself",
     show: Show::Screen,
-    ..state("", "CYCLE START: the program has come to DEPC", &[Condition::Reached("DEPC")])
+    ..state("", "CYCLE START: the program has reached DEPC", &[Condition::Reached("DEPC")])
 };
 
 pub const INTERRUPT: Step = Step {

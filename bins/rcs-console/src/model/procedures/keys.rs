@@ -48,8 +48,7 @@ impl Model {
         let (Some(step), begun) = (track.step(), track.begun) else { return };
         let sight = Sight { picture, cell: &cell, operating: self.operating.as_ref(), begun };
         if !step.needs_a_word(&sight) {
-            self.answer =
-                Some("the console sees by itself whether this is so; s leaves the step out".to_owned());
+            self.answer = Some("the console checks this itself; s leaves the step out".to_owned());
             return;
         }
         let note = note(track, "done");
@@ -82,14 +81,14 @@ impl Model {
         let Some(track) = self.procedures.open() else { return };
         let Some(step) = track.step() else { return };
         let Some(operating) = self.operating.as_mut().filter(|operating| operating.lost.is_none()) else {
-            self.answer = Some("this console looks only: start it with --operate to do a step".to_owned());
+            self.answer = Some("this console is read-only: start it with --operate to do a step".to_owned());
             return;
         };
         if step.ask.is_empty() {
-            self.answer = Some("nothing is asked for at this step: do it at its place".to_owned());
+            self.answer = Some("this step has no request: do it at the machine".to_owned());
         } else if !step.warning.is_empty() && !track.is_warned {
             track.is_warned = true;
-            self.answer = Some(format!("WARNING: {}; Enter again does it", step.warning));
+            self.answer = Some(format!("WARNING: {}; Enter again confirms", step.warning));
         } else {
             let sight = Sight { picture, cell: &cell, operating: None, begun: track.begun };
             track.ask(&sight, operating.newest()).into_iter().for_each(|line| operating.ask(line));

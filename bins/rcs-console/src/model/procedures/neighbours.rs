@@ -24,8 +24,8 @@ pub const WORKSTATION: Procedure = Procedure {
             ..state("b", "the robot is at HOME", &[Condition::AtHome])
         },
         Step {
-            how: "If it is wanted: its procedure comes first.",
-            ..said("c", "the Data System is connected, or is not wanted")
+            how: "If it is needed: do its procedure first.",
+            ..said("c", "the Data System is connected, or is not needed")
         },
         Step {
             ask: &[Line("PAUSE")],
@@ -42,7 +42,7 @@ pub const WORKSTATION: Procedure = Procedure {
         },
         Step {
             ask: &[Line("job go")],
-            how: "GO. Its commands count from now on; an operator may stop the robot, but not command it.",
+            how: "GO. Its commands are executed from now on; an operator may stop the robot, but not command it.",
             warning: "the workstation controller moves the robot from now on",
             until: "8",
             ..state(
@@ -52,7 +52,7 @@ pub const WORKSTATION: Procedure = Procedure {
             )
         },
         Step {
-            how: "It is closed between two commands: the job then sends PAUSE and goes on.",
+            how: "It is closed between two commands: the job then sends PAUSE and continues.",
             ..state("8", "disconnected: the job commands again", &[Condition::Commands("the job")])
         },
     ],
@@ -73,16 +73,16 @@ pub const DATA_SYSTEM: Procedure = Procedure {
             until: "4",
             ..state(
                 "3",
-                "STARTUP is finished: the Data System is told of moves",
+                "STARTUP is finished: the Data System receives moves",
                 &[Condition::DataSystem(Connection::Open)],
             )
         },
         Step {
             ask: &[Line("SHUTDOWN")],
-            how: "667 line 1, when it is wanted no more.",
+            how: "667 line 1, when it is no longer needed.",
             ..event(
                 "4",
-                "SHUTDOWN is finished: it is told nothing more",
+                "SHUTDOWN is finished: it receives nothing more",
                 &[Condition::Taken, Condition::DataSystem(Connection::Closed)],
             )
         },

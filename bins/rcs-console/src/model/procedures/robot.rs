@@ -36,7 +36,7 @@ pub const POWER_UP: Procedure = Procedure {
         Step {
             how: "Its process turns it to the + limit, sets its counter and parks it; its keys are on screen 6.",
             show: Show::Pedestal,
-            ..state("3", "the rotary table stands at -20.0 degrees", &[Condition::TableAt(-200)])
+            ..state("3", "the rotary table is at -20.0 degrees", &[Condition::TableAt(-200)])
         },
         Step {
             show: Show::Pedestal,
@@ -65,7 +65,7 @@ pub const SET_UP: Procedure = Procedure {
             ..state("1", "no workstation controller commands", &[Condition::Commands("the job")])
         },
         Step {
-            how: "Block 907 and DB-DONE: without STARTUP nothing is told to the Data System.",
+            how: "Block 907 and DB-DONE: without STARTUP nothing is sent to the Data System.",
             ..state("2", "the Data System is not connected", &[Condition::DataSystem(Connection::Closed)])
         },
         Step {
@@ -80,7 +80,7 @@ pub const SET_UP: Procedure = Procedure {
         },
         Step {
             how: "Blocks 903 and 907 of Subtask, E-move and Prim: see the procedures of IV.4.",
-            ..said("5", "the neighbours that are wanted are connected")
+            ..said("5", "the required neighbours are connected")
         },
         Step {
             how: "GO on boards 4, 2 and 8. A gripper that is not on the robot is dormant.",
@@ -138,7 +138,7 @@ pub const START_UP: Procedure = Procedure {
         },
         Step { id: "5", ..controller::FAULT_RESET },
         Step {
-            how: "No person stands in the work volume, and nothing that does not belong there. \
+            how: "No person is in the work volume, and nothing that does not belong there. \
                   Each gripper that is not on the robot sits in its own holster.",
             show: Show::Holsters,
             ..said("6", "the work volume is clear, the grippers sit in holsters")
@@ -159,13 +159,13 @@ pub const START_UP: Procedure = Procedure {
             how: "The one of step 2 has found no robot controller. E-move gives it again with a new PAUSE.",
             ..event(
                 "12b",
-                "Prim has started the link anew, and T3 Interface says finished",
+                "Prim has restarted the link, and T3 Interface reports finished",
                 &[Condition::Taken, Condition::Says(ProcessId::T3i, "finished")],
             )
         },
         Step {
             ask: &[Line("execute PRIM 2")],
-            how: "PRIM-LEVEL PRIM-LEVEL II: Prim runs twice, and what it gives is what it gets.",
+            how: "PRIM-LEVEL PRIM-LEVEL II: Prim runs twice, and its outputs equal its inputs.",
             show: Show::Frames,
             until: "15",
             ..event(
@@ -181,7 +181,7 @@ pub const START_UP: Procedure = Procedure {
             show: Show::Hand,
             ..event(
                 "14",
-                "E-move and Prim run, the link runs, the robot stands",
+                "E-move and Prim run, the link runs, the robot is at rest",
                 &[Condition::Taken, Condition::Run(BOARD_2), Condition::LinkRuns, Condition::Stands],
             )
         },
@@ -220,13 +220,13 @@ pub const START_UP: Procedure = Procedure {
             show: Show::Hand,
             ..event(
                 "19",
-                "the robot is at HOME, and Task says finished",
+                "the robot is at HOME, and Task reports finished",
                 &[Condition::Taken, Condition::Says(ProcessId::Task, "finished"), Condition::AtHome],
             )
         },
         Step {
             ask: &[Line("joystick velocity 0")],
-            how: "So it stays when the robot is left alone; hold Prim (h) as well.",
+            how: "Keep it so when the robot is left alone; hold Prim (h) as well.",
             show: Show::Box,
             ..state("19b", "the knob is at 0", &[Condition::KnobUp(false)])
         },
@@ -240,13 +240,13 @@ pub const SHUT_DOWN: Procedure = Procedure {
     steps: &[
         Step {
             ask: &[Line(HOME), Line("joystick velocity 500"), Line("go")],
-            how: "863 line 3; where a trajectory to SAFE leads, MOVE to SAFE first (667 line 10).",
+            how: "863 line 3; if a trajectory leads to SAFE, MOVE to SAFE first (667 line 10).",
             warning: "the robot moves to HOME",
             show: Show::Hand,
             until: "2",
             ..state(
                 "1",
-                "the robot is at HOME, and Task says finished",
+                "the robot is at HOME, and Task reports finished",
                 &[Condition::Says(ProcessId::Task, "finished"), Condition::AtHome],
             )
         },
@@ -257,7 +257,7 @@ pub const SHUT_DOWN: Procedure = Procedure {
             ..state("2", "an E-stop is pressed: no hydraulic pressure", &[Condition::NoPressure])
         },
         Step {
-            how: "It keeps the arm from drifting to the floor. Whenever the power is off, look.",
+            how: "It keeps the arm from drifting to the floor. Check it whenever the power is off.",
             show: Show::Hand,
             ..said("3", "the shot pin under the shoulder has extended")
         },

@@ -73,12 +73,12 @@ fn details(step: &Step, mark: &Mark, sight: &Sight<'_>) -> Vec<Text> {
     }
     match mark {
         Mark::Open if step.needs_a_word(sight) => {
-            say(Tone::Faint, "the console cannot see this: y says that it is so".to_owned());
+            say(Tone::Faint, "the console cannot check this: y confirms it".to_owned());
         }
-        Mark::Said(tick) => say(Tone::Faint, format!("said in tick {tick}")),
+        Mark::Said(tick) => say(Tone::Faint, format!("confirmed in tick {tick}")),
         Mark::Done(tick) => say(Tone::Faint, format!("done in tick {tick}")),
         Mark::Skipped(tick, reason) => say(Tone::Faint, format!("left out in tick {tick}: {reason}")),
-        Mark::NotThere => say(Tone::Faint, "the simulated cell has no such thing".to_owned()),
+        Mark::NotThere => say(Tone::Faint, "the simulated cell does not have this".to_owned()),
         Mark::Open | Mark::Seen => {}
     }
     lines.into_iter().map(|Text { tone, text }| Text::new(tone, format!("{INDENT}{text}"))).collect()

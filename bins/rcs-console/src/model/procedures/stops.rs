@@ -34,10 +34,10 @@ pub const E_STOP: Procedure = Procedure {
         Step {
             how: "The hand sinks until the shot pin holds the shoulder, or until it lies on something.",
             show: Show::Hand,
-            ..said("4", "the shot pin has been looked at, and where the arm sinks")
+            ..said("4", "the shot pin, and where the arm sinks, have been checked")
         },
         Step {
-            how: "If damage threatens, or is being done: steps 6 to 8 at once, as soon as possible.",
+            how: "If damage threatens or occurs: steps 6 to 8 at once.",
             show: Show::Hand,
             ..said("5", "it can settle without damage, or power comes back now")
         },
@@ -49,12 +49,12 @@ pub const E_STOP: Procedure = Procedure {
         Step { id: "11", ..controller::CYCLE_START },
         Step {
             ask: &[Line("joystick free PRIM"), Line("PAUSE")],
-            how: "PAUSE takes the position of the robot over, and starts the link again.",
+            how: "PAUSE adopts the position of the robot, and restarts the link.",
             warning: "the robot comes under control; it must not move",
             show: Show::Hand,
             ..event(
                 "12",
-                "Prim runs, the link runs, the robot stands",
+                "Prim runs, the link runs, the robot is at rest",
                 &[
                     Condition::Taken,
                     Condition::Run(&[ProcessId::Prim]),
@@ -71,8 +71,8 @@ pub const E_STOP: Procedure = Procedure {
         },
         Step {
             ask: &[Line("job go")],
-            how: "The job sends PAUSE and the line that was interrupted. :job skip goes on behind it.",
-            warning: "the robot goes on with its job",
+            how: "The job sends PAUSE and the line that was interrupted. :job skip continues after it.",
+            warning: "the robot continues its job",
             ..state("14", "the job plays", &[Condition::Commands("the job plays")])
         },
     ],
@@ -95,7 +95,7 @@ pub const WARNING: Procedure = Procedure {
         Step { id: "12e", ..controller::CYCLE_START },
         Step {
             ask: &[Line("PAUSE")],
-            how: ".R: PAUSE lets Prim execute RESTART, and takes the position over.",
+            how: ".R: PAUSE lets Prim execute RESTART, and adopts the position.",
             show: Show::Frames,
             ..event(
                 "12f",
@@ -178,7 +178,7 @@ pub const MANUAL_CONTROL: Procedure = Procedure {
     steps: &[
         Step {
             id: "1",
-            how: "After trouble this may be better than to move to HOME first, or the only way.",
+            how: "After a failure this may be better than moving to HOME first, or the only way.",
             ..controller::INTERRUPT
         },
         Step { id: "2", ..controller::CANCEL },

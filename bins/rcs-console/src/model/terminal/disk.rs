@@ -67,7 +67,7 @@ impl Interpreter<'_> {
         self.on(6)?;
         if self.board.offset != commands::OFFSET {
             let offset = commands::OFFSET;
-            return Err(format!("blocks of commands stand at offset {offset}: {offset} OFFSET !"));
+            return Err(format!("blocks of commands are at offset {offset}: {offset} OFFSET !"));
         }
         let is_stopped = self
             .picture

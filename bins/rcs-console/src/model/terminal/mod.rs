@@ -166,7 +166,7 @@ impl Model {
     fn cannot_edit(&self) -> Option<String> {
         let board = self.terminal.board.number;
         if self.operating.is_none() {
-            return Some("this console looks only: start it with --operate to edit blocks".to_owned());
+            return Some("this console is read-only: start it with --operate to edit blocks".to_owned());
         }
         if !RUNNING.contains(&board) {
             return Some(format!("board {board} has no processes to stop: Tab turns to the next board"));
@@ -285,5 +285,5 @@ impl Model {
 }
 
 fn look_only() -> Text {
-    Text::new(Tone::Trouble, "!!this console looks only: start it with --operate to work on the run")
+    Text::new(Tone::Trouble, "!!this console is read-only: start it with --operate to work on the run")
 }

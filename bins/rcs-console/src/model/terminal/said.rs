@@ -43,7 +43,7 @@ static OLD: [(&[&str], &str); 12] = [
 static BLOCKS: [(u32, &str); 5] = [
     (28, "28 LOAD initialized a board: each process does it in its first tick (IV.2.8)"),
     (188, "188 LOAD prepared the network for the HWSC: connecting does it (IV.4.1)"),
-    (641, "641 LOAD initialized the mailboxes: they are when the HWSC connects (IV.4.1, IX.1)"),
+    (641, "641 LOAD initialized the mailboxes: done when the HWSC connects (IV.4.1, IX.1)"),
     (903, "block 903 chose what is read: the run's options and DB-DONE do (IV.3.2)"),
     (907, "block 907 chose what postprocess writes: the run's options choose it (IV.3.2)"),
 ];

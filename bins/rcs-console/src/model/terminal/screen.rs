@@ -81,7 +81,7 @@ fn about(operating: Option<&Operating>, picture: &Picture, is_used: bool) -> Vec
                 lines.push(Text::new(Tone::Trouble, format!("!!{lost}")));
             }
         }
-        None => lines.push(Text::new(Tone::Faint, " this console looks only: --operate works on a run")),
+        None => lines.push(Text::new(Tone::Faint, " this console is read-only: --operate works on a run")),
     }
     if is_used {
         return lines;

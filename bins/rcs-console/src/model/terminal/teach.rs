@@ -35,8 +35,8 @@ impl Lesson {
             "no pose has been recorded: drive the robot with the joystick box, and press its record button (m on \
              screen 6)",
         )?;
-        let name: Name10 =
-            Name::new(&self.name).map_err(|_| format!("{} is no name of up to 10 characters", self.name))?;
+        let name: Name10 = Name::new(&self.name)
+            .map_err(|_| format!("{} is not a name of up to 10 characters", self.name))?;
         let (store, _) = Store::from_sources(sources.to_vec())
             .map_err(|_| "the task data have errors: rcs-run check shows them".to_owned())?;
         let data = store.view();

@@ -154,7 +154,7 @@ impl Trial<'_, '_> {
             Verdict::Stranded => {
                 let reason = match self.operator.stranded() {
                     Some(reason) => reason.to_owned(),
-                    None => "the robot stands in something".to_owned(),
+                    None => "the robot overlaps another body".to_owned(),
                 };
                 let known = self.branch.closed.course().watch().failure(Ladder::processes());
                 let emergency = self.branch.closed.workstation.emergency();

@@ -36,7 +36,7 @@ pub(super) fn input(
         let elsewhere = if Point::written(name).is_some() {
             "it is an output: write it into [out]"
         } else {
-            "it is no input"
+            "it is not an input"
         };
         Box::new(says(path, format_args!("{elsewhere}; the names are in docs/field.md")).near(name, &known))
     })?;
@@ -114,7 +114,7 @@ pub(super) fn output(
         let elsewhere = if Point::read(name).is_some() {
             "it is an input: write it into [in]"
         } else {
-            "it is no output"
+            "it is not an output"
         };
         Box::new(says(path, format_args!("{elsewhere}; the names are in docs/field.md")).near(name, &known))
     })?;

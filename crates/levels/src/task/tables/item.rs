@@ -1,4 +1,4 @@
-//! Updates of the database about an object (IV.4.2, IX.2; docs/design/recovery.md "Data base"): which moves are
+//! Updates of the database about an object (IV.4.2, IX.2; docs/design/recovery.md "Database"): which moves are
 //! reported, and where the robot has released an object. The tables are consulted when a command is looked up or
 //! accepted, and in each tick in which Subtask reports a released object. No header names their rows.
 

@@ -1,4 +1,4 @@
-//! The object that the robot carries (docs/design/recovery.md "Data base"): when it becomes the carried object, and
+//! The object that the robot carries (docs/design/recovery.md "Database"): when it becomes the carried object, and
 //! what Task records of it when its command ends. No header names the rows.
 
 use rcs_core::{Actions, Plain, Variables, decision_table};

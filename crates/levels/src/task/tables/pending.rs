@@ -1,4 +1,4 @@
-//! The updates that the Data System has not accepted (IV.4.2, IX.2; docs/design/recovery.md "Data base"). No header
+//! The updates that the Data System has not accepted (IV.4.2, IX.2; docs/design/recovery.md "Database"). No header
 //! names the rows.
 
 use interfaces::data_base::Connection;

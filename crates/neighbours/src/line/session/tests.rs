@@ -112,10 +112,7 @@ fn protocol_error_closes_the_session_with_a_reason() {
         ),
         (frame(frame::PULSE, b"?"), "the number of a tick was expected in a pulse, 8 bytes, found 1"),
         (frame(DISCONNECT, b"good bye"), "the address of mailbox HWSC to RCS Command at F6000 or "),
-        (
-            vec![0, 0x60, 0x0F, 0, 1, 0],
-            "a length of 8 to 4096 was expected behind the address F6000, found 1",
-        ),
+        (vec![0, 0x60, 0x0F, 0, 1, 0], "a length of 8 to 4096 was expected after the address F6000, found 1"),
     ];
     for (bytes, expected) in cases {
         let (mut controller, mut neighbour, now) = open(Role::Workstation, ClockKind::Real);

@@ -50,7 +50,7 @@ impl Check<'_> {
     }
 
     pub(super) fn frame(&mut self, path: &str, points: &Points) {
-        let expected = "three points that do not stand on a line";
+        let expected = "three points that are not on one line";
         self.that(points.frame().is_some(), path, expected, || {
             format!("{:?}, {:?}, {:?}", points.wrist, points.tool, points.finger)
         });

@@ -213,7 +213,7 @@ fn when(entry: &Entry<'_>) -> Result<When, Box<Problem>> {
     let (from, until) = (form.from.or(after).unwrap_or(0), form.until.unwrap_or(u64::MAX));
     if from >= until {
         let message =
-            format_args!("has no tick: expected `until` behind the beginning, found {from} to {until}");
+            format_args!("has no tick: expected `until` after the beginning, found {from} to {until}");
         return Err(entry.says(message));
     }
     Ok(When { from, until, rate, ticks: length })

@@ -44,7 +44,7 @@ pub(super) fn rule(entry: &Entry<'_>, kind: FaultKind) -> Result<Rule, Box<Probl
             let (from, until) = (from.unwrap_or(0), until.unwrap_or(u64::MAX));
             if from >= until {
                 let message =
-                    format_args!("has no tick: expected `until` behind `from`, found {from} to {until}");
+                    format_args!("has no tick: expected `until` after `from`, found {from} to {until}");
                 return Err(entry.says(message));
             }
             rule.window(from, until)

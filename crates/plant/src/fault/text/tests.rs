@@ -153,7 +153,7 @@ fn fault_file_errors_have_place_expected_and_found() {
         ("kind = \"air-lost\"\nat = 1\nuntil = 2", "has `at`, which is one moment, and `until`"),
         (
             "kind = \"air-lost\"\nfrom = 9\nuntil = 9",
-            "has no tick: expected `until` behind the beginning, found 9 to 9",
+            "has no tick: expected `until` after the beginning, found 9 to 9",
         ),
         ("kind = \"air-lost\"\nfrom = 9\nticks = 9", "has a range of ticks, which says how long it lasts"),
         ("kind = \"air-lost\"\nat = \"soon\"", "fault[1].at: expected a whole number from 0 to "),
@@ -179,7 +179,7 @@ fn fault_file_errors_have_place_expected_and_found() {
             "fault[1].byte: expected a whole number from 0 to 255, found 256",
         ),
         ("kind = \"drop\"\nat = 1\nticks = 2", "drop is refused: "),
-        ("kind = \"drop\"\nuntil = 0", "drop has no tick: expected `until` behind `from`, found 0 to 0"),
+        ("kind = \"drop\"\nuntil = 0", "drop has no tick: expected `until` after `from`, found 0 to 0"),
         ("at = 3", "fault[1] has no key kind, which it needs"),
     ] {
         assert!(said(entry).contains(expected), "{entry}\n  says     {}\n  expected {expected}", said(entry));

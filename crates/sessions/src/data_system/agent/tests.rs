@@ -212,8 +212,9 @@ fn garbled_status_is_ignored_and_reported_with_its_content() {
         assert_eq!(agent.execute(&update(1, "UNIT_1")), None, "{text}");
         assert_eq!(pending(&agent), 1, "{text}");
         let said: Vec<_> = agent.remarks().iter().skip(1).map(ToString::to_string).collect();
-        let garbled =
-            format!("{DATA_SYSTEM_STATUS} cannot be read, the Data System counts as not answering: {text}");
+        let garbled = format!(
+            "{DATA_SYSTEM_STATUS} cannot be read, the Data System is treated as not answering: {text}"
+        );
         assert_eq!(said, [garbled, "the Data System has not answered command 1 for 0 s".to_owned()]);
         is_done(agent.execute(&update(2, "UNIT_1")), 2);
         assert_eq!(pending(&agent), 0, "{text}");

@@ -55,12 +55,12 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
                 "relative.sensor",
                 at,
                 format!("{name} is a guarded move and names no sensor"),
-                "write the name of a sensor (-sen-) behind the movetable".to_owned(),
+                "write the name of a sensor (-sen-) after the movetable".to_owned(),
             ),
             (false, false) => findings.warning(
                 "relative.sensor",
                 at,
-                format!("{name} is no guarded move: nothing watches {}", record.sensor),
+                format!("{name} is not a guarded move: nothing watches {}", record.sensor),
                 "leave the sensor out".to_owned(),
             ),
             _ => {}

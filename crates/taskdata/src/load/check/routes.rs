@@ -31,7 +31,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
                 format!(
                     "no command can reach the trajectory {name}: it ends at the location where it starts"
                 ),
-                "within one location only depart and approach are flown".to_owned(),
+                "within one location only depart and approach are followed".to_owned(),
             );
         } else if !pairs()
             .any(|(from, to)| !from.has_location_of(to) && data.trajectory_id(from, to) == Some(id))

@@ -35,11 +35,11 @@ impl fmt::Display for OwnLineError {
             Self::Load => {
                 "load OFFSET BLOCK was expected, such as load 21000 610; load FILE is for the controller's own jobs"
             }
-            Self::Wait => "wait stands in jobs only: the workstation controller counts the ticks by itself",
+            Self::Wait => "wait is for jobs only: the workstation controller counts the ticks itself",
             Self::After => {
-                "after stands in jobs only: the workstation controller counts the ticks, and sends the line then"
+                "after is for jobs only: the workstation controller counts the ticks, and sends the line then"
             }
-            Self::HandOver => "workstation stands in the controller's own jobs only: they hand over",
+            Self::HandOver => "workstation is for the controller's own jobs only: they hand over",
             Self::Unreadable(why) => why,
         })
     }
@@ -136,7 +136,9 @@ mod tests {
                 .map(|action| matches!(action, Workstation::Vise { .. })),
             Ok(true)
         );
-        let OwnLineError::Unreadable(why_not) = why("** vise open PFIXTURE") else { panic!("it is no line") };
+        let OwnLineError::Unreadable(why_not) = why("** vise open PFIXTURE") else {
+            panic!("it is not a line")
+        };
         assert_eq!(why_not, "no line for the cell is named **");
         let command = |line: &str| own_command(line, &store).map(|line| line.text);
         let pause = Ok("== PAUSE -- 0 -- 0 0 -- 0 -- 0".to_owned());
@@ -147,7 +149,9 @@ mod tests {
             panic!("it is not a command")
         };
         assert!(why_not.contains("was expected, the line ends"), "{why_not}");
-        let OwnLineError::Unreadable(why_not) = why("estop terminals now") else { panic!("it is no line") };
+        let OwnLineError::Unreadable(why_not) = why("estop terminals now") else {
+            panic!("it is not a line")
+        };
         assert_eq!(why_not, "the line should end before now");
     }
 }

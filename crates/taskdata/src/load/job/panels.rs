@@ -15,10 +15,10 @@ use super::{fields::Fields, read::Reader};
 const STICK_FORM: &str = "** joystick stick X Y TICKS, X and Y from -1000 to 1000; stick 0 0 releases it";
 const PRESS_FORM: &str = "** joystick up|down|roll+|roll-|open|close TICKS";
 const VELOCITY_FORM: &str = "** joystick velocity N, from 0 to 1000";
-const STEP_FORM: &str = "** joystick step PROCESS, or with a COUNT behind it";
-const ALIGN_FORM: &str = "** panel align, or with an AXIS from 1 to 6 behind it";
+const STEP_FORM: &str = "** joystick step PROCESS, or with a COUNT after it";
+const ALIGN_FORM: &str = "** panel align, or with an AXIS from 1 to 6 after it";
 const RUN_FORM: &str = "** table run+|run- TICKS";
-const TABLE_STEP_FORM: &str = "** table step+|step-, or with a COUNT behind it: a step is 0.01 degree";
+const TABLE_STEP_FORM: &str = "** table step+|step-, or with a COUNT after it: a step is 0.01 degree";
 
 const FULL: i32 = 1000; // deflection of the stick, and scale of the knob
 

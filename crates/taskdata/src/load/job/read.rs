@@ -103,7 +103,7 @@ impl Reader<'_, '_> {
             return Some(true);
         }
         let help = "a command that has to fail ends with `expect error`; without it a command has to finish";
-        self.problems.error_help("job.fields", fields.at(), "error was expected behind expect", help);
+        self.problems.error_help("job.fields", fields.at(), "error was expected after expect", help);
         None
     }
 

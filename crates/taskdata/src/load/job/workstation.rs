@@ -9,7 +9,7 @@ use super::{
     read::{MOST, Reader},
 };
 
-const TRAY_FORM: &str = "** tray UNIT SECTOR OBJECT, or with X Y ANGLE behind it: 0.01 in and 0.01 degree from the centre of the sector";
+const TRAY_FORM: &str = "** tray UNIT SECTOR OBJECT, or with X Y ANGLE after it: 0.01 in and 0.01 degree from the centre of the sector";
 const WAIT_FORM: &str = "** wait TICKS; a tick is 40 ms";
 const AFTER_FORM: &str = "** after TICKS, then another line's words behind its **";
 
@@ -22,7 +22,7 @@ impl Reader<'_, '_> {
                 let verb_at = fields.at();
                 let verb = self.word(fields, "step of the workstation")?;
                 if matches!(verb, Verb::After | Verb::Wait | Verb::HandOver) {
-                    let message = "this takes time by itself and cannot come behind after";
+                    let message = "this action has its own duration and cannot follow after";
                     self.problems.error_help("job.after", verb_at, message, AFTER_FORM);
                     return None;
                 }

@@ -241,8 +241,8 @@ impl Linker<'_> {
             names.push(name);
             match times {
                 1 => {}
-                2 => self.problems.add_help("name.unknown", at, "1 more entry asks for it"),
-                more => self.problems.add_help("name.unknown", at, &format!("{} more ask for it", more - 1)),
+                2 => self.problems.add_help("name.unknown", at, "1 more entry refers to it"),
+                more => self.problems.add_help("name.unknown", at, &format!("{} more refer to it", more - 1)),
             }
         }
         names

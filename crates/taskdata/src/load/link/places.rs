@@ -153,7 +153,7 @@ impl Linker<'_> {
             self.problems.error_help(
                 "owner.first",
                 member.name.at,
-                format!("the first member of {} is no location point", entry.name.name),
+                format!("the first member of {} is not a location point", entry.name.name),
                 "the first member of an owner of arrays is the location point at which they are used (VII.5)",
             );
         }

@@ -227,7 +227,9 @@ impl Needs<'_, '_> {
             return;
         }
         let object = self.command.object.unwrap_or_default();
-        let message = format!("TRANSFER releases {object} at {PEDESTAL}, whose hand is not told to grip it");
+        let message = format!(
+            "TRANSFER releases {object} at {PEDESTAL}, but does not command the hand there to grip it"
+        );
         let help = "name a tray, a fixture or a holster as the destination; another grip there regrips the object \
                     on the pedestal on the way";
         self.error(Field::Destination, message, help);
@@ -268,7 +270,7 @@ impl Needs<'_, '_> {
             "RELEASE-TOOL" => "an INSERT-TOOL",
             "REMOVE-TOOL" => "an ACQUIRE-TOOL",
             _ if Some(first) == command.object => return,
-            _ => "a command that lets it go",
+            _ => "a command that releases it",
         };
         let what = if verb == "ACQUIRE-TOOL" { "an empty gripper" } else { "a tool in the gripper" };
         let message = format!("{verb} needs {what}; {found} held here");

@@ -110,7 +110,7 @@ impl Route<'_, '_> {
             self.missing(
                 field,
                 format!("no trajectory leads from {} to {}", last.name, location.name),
-                "add a trajectory form (VII.6); each is flown from its start to its end only".to_owned(),
+                "add a trajectory form (VII.6); each leads from its start to its end only".to_owned(),
             );
         }
         self.last = Some(Standing { location, object });

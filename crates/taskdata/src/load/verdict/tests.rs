@@ -49,7 +49,7 @@ fn commands_from_line_request_and_mailbox_get_the_same_text() {
         ("REMOVE-TOOL ENDMILL-1 +1 -- 0 +1 -- 0 HOME 0", "no trajectory leads from TOOL-TRNS to HOME"),
         (
             "TRANSFER LCLEVIS_IH +1 PFIXTURE 0 +1 PEDESTAL 0 HOME 0",
-            "TRANSFER releases LCLEVIS_IH at PEDESTAL, whose hand is not told to grip it",
+            "TRANSFER releases LCLEVIS_IH at PEDESTAL, but does not command the hand there to grip it",
         ),
         ("MOVE LINKBAR9 +2 UNIT_1 4 +2 PFIXTURE 0 -- 0", "no object is named LINKBAR9"),
         ("MOV -- 0 -- 0 0 HOME 0 -- 0", "no command of Task is named MOV"),
