@@ -77,7 +77,7 @@ fn a_vise_taught_a_fifth_of_an_inch_off_is_a_collision() {
     let last = marks.last().map(|(_, text)| text.as_str());
     assert!(
         last.is_some_and(|text| !text.contains("fixed_jaw")),
-        "what comes free is no longer marked: {last:?}"
+        "a body without contact is no longer marked: {last:?}"
     );
 }
 

@@ -103,7 +103,7 @@ impl fmt::Display for ContactEvent {
             Self::Ends(Collision { mover, obstacle, ticks, depth_in, .. }) => {
                 write!(
                     f,
-                    "{mover} comes free of {obstacle} after {}; it was {depth_in:.3} in deep",
+                    "{mover} is clear of {obstacle} after {}; it was {depth_in:.3} in deep",
                     amount(*ticks, "tick")
                 )
             }
@@ -374,7 +374,7 @@ mod tests {
             lines,
             [
                 "left_finger runs into BAR, 0.300 in deep, at (1.00, 2.00, 3.00 in), during MOV-TO-LOC of GOTO-DEST",
-                "left_finger comes free of BAR after 3 ticks; it was 0.700 in deep",
+                "left_finger is clear of BAR after 3 ticks; it was 0.700 in deep",
             ]
         );
         let [one] = check.collisions() else { panic!("{:?}", check.collisions()) };

@@ -3,7 +3,7 @@ use interfaces::Unconfirmed;
 use crate::goal::{Goal, Sensor};
 
 pub static REST: Goal = Goal {
-    holds: "the fingers stand",
+    holds: "the fingers are at rest",
     sensors: &[Sensor::Fingers],
     tolerance: "4 counts (0.007 in) in 4 ticks",
     age: 0,

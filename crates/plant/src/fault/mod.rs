@@ -167,23 +167,18 @@ impl fmt::Display for What {
             Self::CameraBlind => f.write_str("the camera is blind"),
             Self::FieldCut(device) => write!(f, "{device} has no connection"),
             Self::Delivery(object, mishap) => {
-                let object = object.as_deref().unwrap_or("what is delivered");
+                let object = object.as_deref().unwrap_or("the part");
                 match mishap {
-                    DeliveryFault::Missing => write!(f, "{object} does not come"),
+                    DeliveryFault::Missing => write!(f, "{object} is not delivered"),
                     DeliveryFault::Misplaced { x, y } => {
-                        write!(f, "{object} lies {}, {} beside its place", Length(*x), Length(*y))
+                        write!(f, "{object} lies {}, {} from its place", Length(*x), Length(*y))
                     }
                     DeliveryFault::Turned(angle) => write!(f, "{object} is turned by {angle} degrees"),
-                    DeliveryFault::WrongPart(part) => write!(f, "{part} comes instead of {object}"),
+                    DeliveryFault::WrongPart(part) => write!(f, "{part} is delivered instead of {object}"),
                 }
             }
             Self::PedestalMoved { x, y, angle } => {
-                write!(
-                    f,
-                    "the pedestal stands {}, {}, {angle} degrees beside its mark",
-                    Length(*x),
-                    Length(*y)
-                )
+                write!(f, "the pedestal is {}, {}, {angle} degrees from its mark", Length(*x), Length(*y))
             }
         }
     }

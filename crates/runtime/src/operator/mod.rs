@@ -347,7 +347,7 @@ impl Operator {
     fn take_command(&mut self, who: &str) -> Result<(), String> {
         match &self.commander {
             Some(other) if other != who => Err(format!(
-                "{other} commands this run: everybody may stop it; other requests wait until it sends `leave`"
+                "{other} commands this run: everybody may stop it; other requests are refused until it sends `leave`"
             )),
             _ => {
                 self.commander = Some(who.to_owned());

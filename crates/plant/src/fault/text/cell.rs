@@ -108,7 +108,8 @@ fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, B
             return Ok(What::Delivery(object()?, DeliveryFault::Turned(angle()?)));
         }
         "wrong-part" => {
-            let other = form.part.as_ref().ok_or_else(|| entry.says("needs `part`: what comes instead"))?;
+            let other =
+                form.part.as_ref().ok_or_else(|| entry.says("needs `part`: what is delivered instead"))?;
             return Ok(What::Delivery(
                 object()?,
                 DeliveryFault::WrongPart(part(entry, "part", other, cell)?),

@@ -61,11 +61,11 @@ fn every_kind_is_read() {
         ("the air is lost", window(7, 8)),
         ("the hydraulics are lost", window(9, u64::MAX)),
         ("the camera is blind", When::ALWAYS),
-        ("what is delivered does not come", When::ALWAYS),
-        ("LINKBAR1_BH lies 1.50 in, 0.00 in beside its place", When::ALWAYS),
-        ("what is delivered is turned by 30 degrees", When { rate: Some(0.5), ..When::ALWAYS }),
-        ("LCLEVIS_BH comes instead of LINKBAR1_BH", When::ALWAYS),
-        ("the pedestal stands 0.50 in, -0.25 in, 2 degrees beside its mark", When::ALWAYS),
+        ("the part is not delivered", When::ALWAYS),
+        ("LINKBAR1_BH lies 1.50 in, 0.00 in from its place", When::ALWAYS),
+        ("the part is turned by 30 degrees", When { rate: Some(0.5), ..When::ALWAYS }),
+        ("LCLEVIS_BH is delivered instead of LINKBAR1_BH", When::ALWAYS),
+        ("the pedestal is 0.50 in, -0.25 in, 2 degrees from its mark", When::ALWAYS),
     ];
     for (read, (text, when)) in read.iter().zip(expected) {
         assert_eq!(*read, (text.to_owned(), when));
@@ -161,7 +161,7 @@ fn fault_file_errors_have_place_expected_and_found() {
         ("kind = \"turned\"", "turned needs `angle`"),
         ("kind = \"missing\"\nobject = \"LINKBAR1\"\nx = 1", "missing takes no x; it takes object, "),
         ("kind = \"missing\"\nobject = \"LINKBAR_BH\"", "(the nearest one is LINKBAR1_BH)"),
-        ("kind = \"wrong-part\"", "wrong-part needs `part`: what comes instead"),
+        ("kind = \"wrong-part\"", "wrong-part needs `part`: what is delivered instead"),
         ("kind = \"pedestal-moved\"\nat = 3", "pedestal-moved takes no at; it takes x, y, angle"),
         ("kind = \"misplaced\"\nx = 101", "fault[1].x: expected -100 to 100 in, found 101"),
         ("kind = \"flip\"\nrate = 2", "fault[1].rate: expected a chance of 0.000001 to 1, found 2"),
