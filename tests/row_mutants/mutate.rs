@@ -37,7 +37,7 @@ impl fmt::Display for Mutant {
 }
 
 impl Mutant {
-    /// The process as in the names of tests; empty for a table of all processes.
+    /// The prefix that the names of the process's tests have; empty for a table that all processes share.
     pub fn process(&self) -> String {
         let mut parts = self.file.components().skip(3).map(|part| part.as_os_str().to_string_lossy());
         match (parts.next(), parts.next()) {

@@ -56,7 +56,7 @@ impl Console {
     }
 }
 
-/// Wait for the end of the console, and then set `stop`: nobody watches the robot any more. `over` ends the console.
+/// Wait for the end of the console, and then set `stop`, because nobody watches the robot. `over` ends the console.
 fn watch(mut child: Child, stop: &AtomicBool, over: &AtomicBool) {
     let mut is_asked = false;
     while matches!(child.try_wait(), Ok(None)) {

@@ -64,7 +64,8 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::from(status))
 }
 
-/// The error of the start. A word that is nearer to a subcommand than to any job probably means the subcommand.
+/// The error with which the start failed. A word that is nearer to a subcommand than to any job probably means the
+/// subcommand.
 fn explained(error: StartError) -> Error {
     if let StartError::NoFile(UnknownFile { what, name, known }) = &error
         && *what == JOBS.what

@@ -173,7 +173,7 @@ impl SimulatedField {
         arrived
     }
 
-    /// Ends the couplers: each device gets the outputs of the end, which are then read back, or it does not answer.
+    /// Ends the couplers: each device gets the final outputs, which are then read back, unless it does not answer.
     /// `inputs` are the last ones of the controller.
     pub fn end(&mut self, inputs: &DeviceInputs) {
         self.desk.end();

@@ -19,7 +19,7 @@ pub enum Mode {
     Run,
     /// Write the safe outputs. The device is tripped until it is released.
     Safe,
-    /// Write the outputs of the end, read them back, and disconnect.
+    /// Write the final outputs, read them back, and disconnect.
     End,
 }
 

@@ -9,7 +9,7 @@
 //! | back later, or not as left | trips |
 //! | tripped | writes the safe outputs until an operator releases the device |
 //! | no orders for three ticks | writes the safe outputs once, then nothing, so that the watchdog fires too |
-//! | end | writes the outputs of the end, reads them back, disconnects |
+//! | end | writes the final outputs, reads them back, disconnects |
 //!
 //! The image is a state, not a list of events: a device may carry it out twice.
 
@@ -34,7 +34,7 @@ const MOST_SILENCE: u64 = 116 * MS;
 const PAUSES: (u64, u64) = (20 * MS, 320 * MS);
 /// Period in which outputs, settings and status of the device are read back.
 const CHECKED_EVERY: u64 = 1000 * MS;
-const MOST_ENDING: u64 = 150 * MS; // time within which the outputs of the end must be confirmed
+const MOST_ENDING: u64 = 150 * MS; // time within which the final outputs must be confirmed
 const MOST_STILL: u64 = 2000 * MS; // time in which the counter of a device's program must change
 
 #[derive(Clone, Copy, Debug, PartialEq)]

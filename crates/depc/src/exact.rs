@@ -45,8 +45,9 @@ impl ExactFrames {
         }
     }
 
-    /// The unrounded end-plate frame (inches, world) of a position, or the frame of the words. Positions arrive in the
-    /// order of the frames, so older frames are dropped. A repeated position gives the next frame with the same words.
+    /// The unrounded end-plate frame (inches, world) of a position. If no frame has these words, the frame of the words
+    /// themselves. Positions arrive in the order of the frames, so older frames are dropped. A repeated position gives
+    /// the next frame with the same words.
     pub fn plate_frame(&mut self, words: &Plate, arm: &Arm) -> Frame {
         let gives = |wire: &WireFrame| {
             let tool = wire.to_frame().ok();

@@ -1,6 +1,6 @@
 //! The nearest known name, for messages about an unknown name.
 
-/// The candidate with the least edit distance, the first of equals, if the difference can be a typing error.
+/// The candidate with the least edit distance, if the difference can be a typing error. Of equal candidates, the first.
 #[must_use]
 pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (wanted.len() / 3).max(1);

@@ -3,8 +3,8 @@
 //! [`closed_loop::course`] steps the control processes with tick-parity buffers, and this crate runs a course.
 //! [`runner`] times the steps and publishes the buffers, [`clock`] and [`overrun`] determine when ticks begin,
 //! [`realtime`] requests real-time priority, [`boards`] distributes the processes over operating system processes,
-//! [`memory`] publishes the buffers in shared memory. Lines to robots are [`serial`], to a T3, and [`mod@egm`];
-//! [`field`] has the devices behind Modbus couplers.
+//! [`memory`] publishes the buffers in shared memory. [`serial`] is the line to a T3, and
+//! [`mod@egm`] the line to a robot with EGM. [`field`] has the devices behind Modbus couplers.
 
 #![deny(unsafe_code)]
 

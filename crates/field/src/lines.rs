@@ -33,7 +33,7 @@ pub struct Sequence {
     pub done: Vec<Condition>,
     pub during: Vec<Condition>, // conditions that must hold from the setting of the outputs to the end
     pub fault: Vec<Condition>,  // inputs that end the line with a failure
-    /// Outputs to set after `begun`, or at the end of a line that has failed or has no `begun`.
+    /// Outputs that are set when `begun` becomes true; without `begun`, or after a failure, when the line ends.
     pub then: Vec<Setting>,
     pub begun_within_s: u16,
     pub within_s: u16,

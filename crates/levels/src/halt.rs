@@ -46,7 +46,7 @@ pub enum Kind {
 pub enum BoxState {
     /// The joystick box is off.
     Off,
-    /// The joystick box is on: the operator has the robot, and no command is sent.
+    /// The joystick box is on: the operator controls the robot, and no command is sent.
     On,
 }
 

@@ -25,7 +25,7 @@ messages! {
     LadderLevel {
         /// Its name, as the manual writes it.
         process: Cow<'static, str>,
-        /// Its command, with objects and places. A point for T3 Interface is only named: there is one per tick.
+        /// Its command, with objects and places. A point of T3 Interface has no coordinates: it changes every tick.
         command: String,
         /// The word of its report.
         status: Cow<'static, str>,

@@ -46,7 +46,8 @@ impl Ending {
         }
     }
 
-    /// A job with an error in the cell has failed, and that error may be the cause of a failed job.
+    /// Adds the errors in the cell. A job that has such an error has failed. In a job that failed anyway, the error may be
+    /// the cause.
     fn checked(self, verdicts: Vec<Failure>) -> Self {
         match self {
             Self::Failed(account) => Self::Failed(account.with(verdicts)),

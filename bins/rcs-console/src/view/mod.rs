@@ -1,6 +1,7 @@
 //! Draws the model as a frame of text.
 //!
-//! Line 1 shows the screens, lines 2 to 4 the state band. The last line shows the keys, the line above it the news.
+//! Line 1 shows the screens, lines 2 to 4 the state band. The last line shows the keys, and the line above
+//! it the news.
 
 mod band;
 mod help;

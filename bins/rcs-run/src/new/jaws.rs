@@ -16,7 +16,7 @@ const CLOSED: f64 = 0.05; // least gap of the jaws when they close on a part, in
 pub const GRIPPED: f64 = 0.50; // least height of a part above the jaws for the fingers, in
 pub const LEDGE: f64 = 0.04; // least width of a part on each ledge, in
 const STRIP: f64 = 0.02; // least width of a ledge, in
-/// Geometry of a new step: depth beyond the deepest step, in; height of its ledge as a share; greatest height, in.
+/// A new step is deeper than the deepest step by this, in.
 const DEEPER: f64 = 0.10;
 const HIGHER: f64 = 0.6;
 const LOWEST: f64 = -0.30;

@@ -12,7 +12,7 @@ use crate::rcs_run::error::Error;
 pub trait Numbers {
     fn parts(&self) -> &[PartType];
 
-    /// The places of the new grips that replace a grip, and the lines of their movetables.
+    /// The new grips that replace a grip: their places, and the lines of their movetables.
     fn grips(&self, grip: &GripEntry) -> Result<Vec<(Typed, Vec<MovetableLine>)>, Error>;
 
     /// Approach and grasp openings, force and depart opening of an object, in 0.01 in and lb.

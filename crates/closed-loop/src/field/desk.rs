@@ -77,7 +77,7 @@ impl Desk {
         self.couplers.iter().map(|coupler| &coupler.orders)
     }
 
-    /// Ends the couplers: each session writes the outputs of the end, reads them back and disconnects.
+    /// Ends the couplers: each session writes the final outputs, reads them back and disconnects.
     pub fn end(&mut self) {
         for Coupler { orders, .. } in &mut self.couplers {
             (orders.tick, orders.mode) = (orders.tick.wrapping_add(1), Mode::End);

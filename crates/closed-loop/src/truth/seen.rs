@@ -32,7 +32,8 @@ pub fn nearest(cell: &Cell, object: &str, near: &Vector) -> Option<PartState> {
     (beside(&nearest) <= SECTOR_INCHES).then_some(nearest)
 }
 
-/// The nearest part of its name within half a sector, or the part at the camera position that E-move reports.
+/// The nearest part with the object's name within half a sector. If there is none, the part with this name that the
+/// camera saw at the place that E-move reports.
 fn meant(scene: &Scene<'_>, object: &str, near: &Vector, reported: Option<&Frame>) -> Option<PartState> {
     let is_reported = |part: &PartState| {
         reported.is_some_and(|reported| {

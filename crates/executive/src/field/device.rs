@@ -115,7 +115,7 @@ impl Device {
         report.age(now).map(|age| (report.inputs, age))
     }
 
-    /// Writes the outputs of the end, and waits until they are read back, at most 0.3 s. Returns true if confirmed.
+    /// Writes the final outputs, and waits until they are read back, at most 0.3 s. Returns true if confirmed.
     pub fn end(&mut self) -> bool {
         let end = Orders { tick: self.newest.tick.wrapping_add(1), mode: Mode::End, ..self.newest };
         self.order(&end);

@@ -141,7 +141,7 @@ pub struct CommanderView {
     pub operator: Text<32>,
     /// An operator has stopped the robot: the velocity knob is at 0 until `go`.
     pub is_stopped: bool,
-    /// The joystick box has the robot.
+    /// The joystick box controls the robot.
     pub by_hand: bool,
 }
 

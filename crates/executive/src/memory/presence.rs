@@ -69,7 +69,7 @@ pub(super) fn is_alive(prefix: &str) -> bool {
     objects(&format!("{prefix}{MARK}")).any(|path| locked(&path))
 }
 
-/// Prefixes of all runs of this user whose lock files are in shared memory, for any directory of runs.
+/// Prefixes of all runs of this user that have a lock file in shared memory, whichever directory of runs they use.
 pub(super) fn prefixes() -> Vec<String> {
     let own =
         |path: &PathBuf| fs::symlink_metadata(path).is_ok_and(|found| found.uid() == geteuid().as_raw());

@@ -43,7 +43,7 @@ pub const fn robot_at(command: &EmoveCommand, gone_to: GoneTo, pose: Pose) -> Ro
     RobotPlace { gone_to, site: command.site, pose }
 }
 
-/// True if the operator has the robot. Its place matters again when the operator gives it back.
+/// True if the operator controls the robot. Its place matters again when the operator returns the control.
 #[must_use]
 pub fn is_moved_by_hand(memory: &CommonMemory) -> bool {
     memory.prim.status.report == PrimReport::JoystickOn

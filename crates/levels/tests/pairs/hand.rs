@@ -182,8 +182,8 @@ impl Scene for Around {
         rebase(&mut pedestal.table, &mut [&mut out.table.number, &mut pair.scene.table.echo]);
     }
 
-    /// No row tests reasons, the text of an order that has been taken, or step, command, goal and times of an idle
-    /// process.
+    /// Omits what no row tests: reasons, the text of an order that has been taken, and step, command, goal and times of
+    /// an idle process.
     fn image(pair: &Pair) -> Vec<u8> {
         let counters = &[("settled", 6), ("missed", 3), ("touch_ticks", 5), ("still_ticks", 5)];
         let mut image = Image::new(pair.tick, LIMIT, counters);

@@ -1,8 +1,8 @@
 //! The bytes that distinguish states.
 //!
-//! A time is reduced to whether it is over its limit; the time of a command to its age, while an echo may be due. A
-//! counter is limited to the value above which it makes no difference. The row that fired is left out: no process
-//! reads it.
+//! The image of a time only says whether it is over its limit. The image of a command's time is its age, as long as an
+//! echo may be due. A counter is limited to the value above which it makes no difference. The row that fired is left
+//! out, because no process reads it.
 
 use std::{any::TypeId, cell::RefCell, rc::Rc};
 

@@ -302,8 +302,8 @@ impl Scene for Around {
         }
     }
 
-    /// No row tests reasons, the text of an order that has been taken, the opening of an empty hand, or step, command
-    /// and time of an idle process. The pedestal's status repeats its state.
+    /// Omits what no row tests: reasons, the text of an order that has been taken, the opening of an empty hand, and
+    /// step, command and time of an idle process. Omits the pedestal's status, which repeats its state.
     fn image(pair: &Pair) -> Vec<u8> {
         let mut image =
             Image::new(pair.tick, Self::LONG - 500, &[("standing", 3), ("unanswered", SILENT + 2)]);

@@ -33,7 +33,7 @@ const REPLACED: u8 = 6; // ticks for which E-move continues an order of a replac
 pub enum EmoveDoes {
     /// Nothing new; a new order is taken.
     Goes,
-    /// E-move ends the order, or gives it up if the operator has the robot.
+    /// E-move ends the order, or gives it up if the operator controls the robot.
     Ends,
     /// The order fails. A held object stays, and a grasp has closed on an object.
     Fails,
@@ -153,7 +153,7 @@ impl Pair {
 }
 
 impl Around {
-    /// E-move reports *joystick-on* while the operator has the robot, regardless of other results.
+    /// E-move reports *joystick-on* while the operator controls the robot, regardless of other results.
     fn emove_status(&self) -> EmoveStatus {
         let report = match self.emove.report {
             StatusReport::Done | StatusReport::JoystickOn if self.box_on => StatusReport::JoystickOn,
@@ -343,8 +343,8 @@ impl Scene for Around {
         }
     }
 
-    /// No row tests reasons, numbers of poses, the text of a command that has ended, or step and command of an idle
-    /// process.
+    /// Omits what no row tests: reasons, numbers of poses, the text of a command that has ended, and step and command of
+    /// an idle process.
     fn image(pair: &Pair) -> Vec<u8> {
         let mut image = Image::new(pair.tick, ANSWER_LIMIT, &[]);
         let mut it = pair.clone();

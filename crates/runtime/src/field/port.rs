@@ -162,7 +162,7 @@ impl FieldPort {
         self.shares.add(self.reading.saturating_add(writing));
     }
 
-    /// Ends all devices at once: writes the outputs of the end and reads them back. `inputs` are the controller's last.
+    /// Ends all devices at once: writes the final outputs and reads them back. `inputs` are the controller's last.
     pub fn end(&mut self, desk: &mut Desk, inputs: &DeviceInputs) {
         desk.end();
         for (device, orders) in self.devices.iter_mut().zip(desk.orders()) {

@@ -64,7 +64,7 @@ pub struct Operator {
     sessions: Vec<String>,
     commander: Option<String>, // name of the operator in command
     turns_table: bool,         // while the rotary table moves by a key that the commander has pressed
-    /// True for a robot at a port: its knob goes to 0 when motion by hand ends with its session.
+    /// True for a robot at a port. If a session ends during motion by hand, its knob then goes to 0.
     robot_elsewhere: bool,
     counts: Requests,
 }

@@ -47,7 +47,8 @@ pub fn is_moved_by_hand(memory: &CommonMemory) -> bool {
         || memory.task.status.report == HwsReport::JoystickOn
 }
 
-/// Refuses safe outputs, which hold no part, during a command or with a held object. Errors: hindrance and remedy.
+/// Refuses to set safe outputs during a command or with a held object, because safe outputs hold no part. The error
+/// text has the reason and the remedy.
 pub fn check_safe(memory: &CommonMemory) -> Result<(), String> {
     if memory.task.status.report == HwsReport::Executing {
         return Err(

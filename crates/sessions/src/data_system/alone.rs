@@ -9,7 +9,7 @@ use std::{
 
 const SUFFIX: &str = "lock"; // suffix of the file that is locked, after the name of the database
 
-/// Holds the right until it is dropped. The system releases it when the program ends in any way.
+/// The exclusive right to use a database, held until it is dropped. The system releases it whenever the program ends.
 #[derive(Debug)]
 pub struct Alone {
     path: PathBuf,

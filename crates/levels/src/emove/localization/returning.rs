@@ -58,8 +58,8 @@ pub(in crate::emove) struct Origination {
     pub is_out: bool, // the robot returns to the end of the depart leg
 }
 
-/// The parameters of the approach's stop line. Without an approach, those of the last point of a trajectory to the
-/// place, as for a motion to it (SPECNOTES).
+/// The parameters of the approach's stop line. If the place has no approach, the parameters of the last point of a
+/// trajectory to the place. A motion to the place uses the same parameters (SPECNOTES).
 fn parameters_at(at: &RobotPlace, data: &TaskData<'_>) -> Option<TrajParaId> {
     let last = |path| Some(data.path(path).last()?.para);
     approach_to(at, data).and_then(last).or_else(|| {

@@ -23,7 +23,7 @@ pub enum EPauseStep {
     Pausing,
     /// The processes below pause. The operator may take the robot and give it back until the next command.
     Standing,
-    /// The operator has the robot, or has just given it back.
+    /// The operator controls the robot, or has just returned the control.
     Led,
     /// The processes below pause again after the operator has given the robot back.
     Resting,
@@ -35,8 +35,8 @@ pub enum EPauseStep {
 
 decision_table! {
     /// STANDING: E-PAUSE (V.2.1) after its end. Until the next command, the joystick box controls robot and gripper.
-    /// A link failure is reported with `done`, and the next motion restarts the link. When the operator gives the
-    /// robot back, the processes below pause again: jaws keep their air, and may have begun to close.
+    /// A link failure is reported with `done`, and the next motion restarts the link. When the operator
+    /// returns the control, the processes below pause again, because jaws keep their air and may have begun to close.
     pub STANDING: fn standing(self::EPauseStep, struct of super::Senses) -> super::Action or () {
         any {
             1:  work: Busy                        => Wait;

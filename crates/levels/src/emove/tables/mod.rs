@@ -137,7 +137,7 @@ pub enum Action {
     Pause,
     /// PAUSE to Prim, QC-PAUSE to Quick Change; moving fingers finish their order.
     StopRobot,
-    /// Report joystick-on: the operator has the robot.
+    /// Report joystick-on: the operator controls the robot.
     Manual,
     /// Open the fingers for the operator.
     OpenByHand,

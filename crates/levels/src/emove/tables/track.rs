@@ -8,7 +8,7 @@ pub use interfaces::track::Course;
 /// The source of the robot's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Mover {
-    /// The joystick box has the robot, or has had it since the last motion of E-move.
+    /// The joystick box controls the robot, or has controlled it since the last motion of E-move.
     Box,
     /// Prim executes a motion from E-move.
     Emove,

@@ -299,7 +299,7 @@ fn operator_moves_robot_and_fingers() {
     assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "the report stays done");
 }
 
-/// The operator gives the robot back while the fingers move, while the ring pauses, or with a failing link, and takes
+/// The operator returns the control while the fingers move, while the ring pauses, or with a failing link, and takes
 /// it again before all processes are at rest.
 #[test]
 fn returned_robot_is_done_when_all_processes_rest() {
@@ -371,7 +371,7 @@ fn operator_interrupts_a_command() {
     assert_eq!((status.report, status.reason), error(Reason::JoystickOn));
 }
 
-/// A command arrives in the tick in which the operator takes the robot: fingers and ring stay as they are.
+/// A command arrives in the tick in which the operator takes control of the robot: fingers and ring stay as they are.
 #[test]
 fn command_during_manual_control_is_refused() {
     for (holds, verb, object, location) in [

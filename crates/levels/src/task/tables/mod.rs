@@ -49,15 +49,15 @@ use crate::{
 /// The response to the joystick box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
 pub enum Takeover {
-    /// None: the operator does not have the robot.
+    /// None: the operator does not control the robot.
     None,
-    /// The operator takes the robot: S-PAUSE to Subtask, and the executing command ends.
+    /// The operator takes control of the robot: S-PAUSE to Subtask, and the executing command ends.
     Interrupt,
-    /// The operator takes the robot: S-PAUSE to Subtask, and the finished command is no longer reported.
+    /// The operator takes control of the robot: S-PAUSE to Subtask, and the finished command is no longer reported.
     Clear,
-    /// The operator takes the robot: S-PAUSE to Subtask.
+    /// The operator takes control of the robot: S-PAUSE to Subtask.
     Pause,
-    /// The operator has the robot: only PAUSE is accepted.
+    /// The operator controls the robot: only PAUSE is accepted.
     Refuse,
     /// The operator returns the robot: Task awaits the next command.
     Resume,

@@ -350,7 +350,7 @@ fn operator_takes_the_robot_during_a_command() {
         assert_eq!((status.report, status.reason), (HwsReport::JoystickOn, Reason::JoystickOn));
     }
     assert_eq!(bench.sent(), ["GOTO-DEST", "S-PAUSE"], "one pause is enough");
-    // No command is executed while the operator has the robot.
+    // No command is executed while the operator controls the robot.
     assert_eq!(bench.run(HOME), (HwsReport::JoystickOn, Reason::JoystickOn));
     assert!(bench.sent().is_empty());
     bench.world.subtask.joystick = false;

@@ -315,7 +315,7 @@ fn release_requires_a_known_way_out() {
     }
 }
 
-/// A bench whose robot has brought PART to a place. `held` is the content of the gripper as it is known.
+/// A bench whose robot has brought PART to a place. `held` is the content of the gripper that Subtask reports.
 fn brought(held: Holding, at: &str) -> Bench<'static> {
     let mut bench = Bench::default();
     bench.set(1, "PART", at);

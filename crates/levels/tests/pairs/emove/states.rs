@@ -4,7 +4,7 @@ use super::{Fingered, Pair};
 use crate::image::{Image, forget, rebase, rebase_echoes, renumber_poses};
 
 impl<G: Fingered> Pair<G> {
-    /// No row tests reasons, or commands of idle processes.
+    /// Omits what no row tests: reasons, and commands of idle processes.
     pub(super) fn alike(&self) -> Vec<u8> {
         let mut image = Image::new(self.tick, G::LIMIT, G::COUNTERS);
         let mut it = self.clone();

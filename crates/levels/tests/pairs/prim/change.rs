@@ -87,7 +87,7 @@ impl Change {
         self.rests.is_none_or(|rests| (-REACH..=CAUGHT).contains(&x) && (z - rests).abs() <= PLAY)
     }
 
-    /// Prim and the robot are as they are after this tick. It is an error to turn the ring while the robot moves, or to
+    /// `prim` and `robot` are those after this tick. It is an error to turn the ring while the robot moves, or to
     /// drop or tear off the gripper.
     pub fn does(
         &mut self,

@@ -8,8 +8,8 @@ use crate::image::{Image, rebase, rebase_echoes, renumber_poses};
 const LIMIT: u64 = 250; // ticks: longer than any relevant time except that of an echo
 
 impl Pair {
-    /// No row tests reasons, the nearest places, the time at rest above its limit, or the times of link restarts, of
-    /// which too few can occur.
+    /// Omits what no row tests: reasons, the nearest places, the time at rest above its limit, and the times of link
+    /// restarts, of which too few can occur.
     pub(super) fn alike(&self) -> Vec<u8> {
         let mut image = Image::new(self.tick, LIMIT, &[]);
         let mut it = self.clone();

@@ -93,7 +93,7 @@ impl Tool {
         (self.force.z, self.force.moment) != (ZERO, ZERO)
     }
 
-    /// Prim and the robot are as they are after this tick. It is an error to move the fingers while the robot moves.
+    /// `prim` and `robot` are those after this tick. It is an error to move the fingers while the robot moves.
     pub fn does(
         &mut self,
         happens: Happens,

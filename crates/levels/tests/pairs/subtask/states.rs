@@ -12,7 +12,8 @@ use super::{Pair, is_over};
 use crate::image::{forget, rebase, rebase_echoes, renumber_poses};
 
 impl Pair {
-    /// No row tests reasons, commands of idle processes, the text of a taken order, or poses without an order.
+    /// Clears what no row tests: reasons, commands of idle processes, the text of a taken order, and poses without an
+    /// order.
     pub(super) fn forget(&mut self) {
         let (subtask, emove) = (&mut self.upper.state, &mut self.lower.state);
         subtask.execution.reason = Reason::None;
