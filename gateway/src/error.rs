@@ -57,7 +57,7 @@ pub fn words(error: &zenoh::Error) -> String {
     without_places(&error.to_string()).trim_end_matches(['.', '!', ' ']).to_owned()
 }
 
-/// A text of Zenoh without the files and lines of its source code, ` at /…/tcp.rs:105.`, which it appends.
+/// A text of Zenoh without the places in its source code that Zenoh appends, such as ` at /…/tcp.rs:105.`.
 #[must_use]
 pub fn without_places(text: &str) -> String {
     let (mut words, mut rest) = (String::new(), text);

@@ -185,7 +185,7 @@ impl Story {
         Some((found, lowest))
     }
 
-    /// The failure that belongs to a picture: that of Task, or one that reaches Task in the next ticks of a log.
+    /// The failure that belongs to a picture: the failure of Task, or one that reaches Task in the next ticks of a log.
     #[must_use]
     pub fn present_trouble(&self, picture: &Picture) -> Option<&Trouble> {
         let tick = picture.tick.0;

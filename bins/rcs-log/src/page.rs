@@ -63,7 +63,7 @@ fn write(arguments: &Arguments) -> Result<PathBuf, Error> {
     Ok(output)
 }
 
-/// Tables or reasons of a log; those of this program if the log has none.
+/// Tables or reasons of a log. If the log has none, the tables or reasons of this program.
 fn of_log(log: &Log, name: &str, own: impl FnOnce() -> Value) -> Value {
     explanation::of_log(log, name).unwrap_or_else(|| {
         os_io::stderr_line!(

@@ -43,7 +43,7 @@ struct OneLog {
     file: String,
     same: bool, // true if every computed tick is the same as recorded
     ticks: u64,
-    /// Number of ticks that were not computed: those in gaps, and those from a gap to the next snapshot.
+    /// Number of ticks that were not computed: the ticks in gaps, and the ticks from a gap to the next snapshot.
     skipped: u64,
     complete: bool,         // true if the log has its end record
     damage: Option<String>, // the reason why part of the log cannot be read

@@ -9,7 +9,7 @@ use std::{collections::VecDeque, sync::Arc};
 use interfaces::{CommonMemory, StatusReport, hws::HwsReport};
 use taskdata::load::{Store, job::Reload};
 
-/// The task data in use, those of each reload, and the queue of reloads. A copy shares the data.
+/// The task data in use, the task data of each reload, and the queue of reloads. A copy shares the data.
 #[derive(Clone)]
 pub struct Generations {
     first: Arc<Store>,
@@ -57,7 +57,7 @@ impl Generations {
         self.number
     }
 
-    /// All reloads of the run: those in effect and those of later lines of the job.
+    /// All reloads of the run: the reloads in effect, and the reloads of later lines of the job.
     #[must_use]
     pub fn reloads(&self) -> &[Reload] {
         &self.reloads

@@ -89,7 +89,7 @@ pub struct ControllerOutputs {
     pub dtr: bool,
     /// A command was executed in this tick, and the robot moves to [`Controller::commanded`].
     pub moving: bool,
-    /// Function to run now: that of the command whose position was reached in the previous tick.
+    /// Function to run now. It belongs to the command whose position was reached in the previous tick.
     pub function: [u8; 2],
 }
 

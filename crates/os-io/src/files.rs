@@ -65,7 +65,8 @@ pub fn lies_in(path: &Path, directory: &Path) -> bool {
     real.is_ok_and(|(path, directory)| path.starts_with(directory))
 }
 
-/// Paths of the entries of a directory, sorted. Errors: [`ErrorKind::NotFound`] also if it is not built in.
+/// Paths of the entries of a directory, sorted. Errors: [`ErrorKind::NotFound`] also for a built-in
+/// directory that does not exist.
 pub fn list(directory: &Path) -> io::Result<Vec<PathBuf>> {
     let mut paths = match carried::inside(directory) {
         Some(inside) => carried::list(inside),

@@ -30,7 +30,8 @@ const BREAKAWAY_TIME: f64 = 0.25;
 const TOUCHABLE: Real = 2e-3;
 /// Fingers can sleep when none of their points has moved faster than this for half a second, m/s (rad/s).
 const STILL: Real = 1e-9;
-/// Speed of fingers that trapped air drives, in/s: that of the coarse flow, which the same ports limit.
+/// Speed of fingers that trapped air drives, in/s. It equals the speed of the coarse flow, because the same ports limit
+/// both.
 pub const EXPANSION_SPEED: f64 = 4.0;
 
 /// Opening, force and air of the fingers.

@@ -105,7 +105,7 @@ pub struct PartState {
     #[serde(skip)]
     pub id: u32, // from 1
     pub name: String,
-    /// A location: a unit, that of the vise, the drum or the pedestal, `gripper`, `floor` or `elsewhere`.
+    /// A location: a unit, the location of the vise, the drum or the pedestal, `gripper`, `floor` or `elsewhere`.
     pub location: String,
     pub sector: u16, // 0 if not in a unit
     pub held: bool,

@@ -213,7 +213,7 @@ impl Vise {
     }
 
     /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for the position of the fixed one. Deeper steps
-    /// cut pieces out of them: of the remaining areas next to and below each piece, the larger rectangle is used.
+    /// cut pieces out of them. Of the two areas that remain next to and below each piece, the larger is used.
     #[must_use]
     pub fn pads(&self, step: usize) -> Pads {
         let step = self.step(step);
@@ -260,7 +260,7 @@ impl Vise {
         self.step(step).seat(size)
     }
 
-    /// The step for a part that is not clamped: that of the selected program.
+    /// The step for a part that is not clamped: the step of the selected program.
     #[must_use]
     pub fn present_step(&self) -> usize {
         self.clamped.map_or(self.program, |clamped| clamped.step)

@@ -59,7 +59,7 @@ impl Options {
 #[derive(Clone, Debug)]
 pub struct ReplayReport {
     pub ticks: u64,
-    /// Number of ticks that could not be computed: those in gaps, and those from which the replay continued.
+    /// Number of ticks that could not be computed: the ticks in gaps, and the ticks from which the replay continued.
     pub skipped: u64,
     pub first_difference: Option<Difference>,
     pub digest: Digest, // of the computed ticks

@@ -131,7 +131,7 @@ messages! {
         frame: String,
         /// Its name in the task data at present.
         name: String,
-        /// A location: a unit, that of the vise, the drum or the pedestal, `gripper`, `floor` or `elsewhere`.
+        /// A location: a unit, the location of the vise, the drum or the pedestal, `gripper`, `floor` or `elsewhere`.
         location: String,
         /// The nearest sector of the unit; 0 elsewhere.
         sector: u32,

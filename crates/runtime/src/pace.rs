@@ -14,7 +14,7 @@ use interfaces::CommonMemory;
 
 use crate::{event::Event, result::TickTimes};
 
-const PROCESSES_SHOWN: usize = 3; // number of processes in the result: those with the longest times
+const PROCESSES_SHOWN: usize = 3; // number of processes in the result, which have the longest times
 
 pub struct Pace {
     clock: Clock,

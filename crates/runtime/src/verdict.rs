@@ -46,7 +46,7 @@ impl Ending {
         }
     }
 
-    /// Adds the errors in the cell. A job that has such an error has failed. In a job that failed anyway, the error may be
+    /// Adds the errors in the cell. A job with such an error has failed; if it failed anyway, the error may be
     /// the cause.
     fn checked(self, verdicts: Vec<Failure>) -> Self {
         match self {

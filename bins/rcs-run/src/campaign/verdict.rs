@@ -52,7 +52,7 @@ pub struct BranchResult {
     pub whole: bool,
     /// Digest of its last state.
     pub state: String,
-    /// Digest of all ticks of a branch without interruption: that of the ordinary run.
+    /// Digest of all ticks of a branch without interruption, which equals the digest of the ordinary run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub digest: Option<String>,
 }

@@ -152,7 +152,7 @@ macro_rules! exchange {
                 )+ })
             }
 
-            /// Read the outputs of the processes in `tick`; those of a process that did not write in it are unchanged.
+            /// Read the outputs of the processes in `tick`. A process that did not write keeps its outputs.
             /// Returns true if all wrote. Does not allocate.
             pub fn outputs(&self, tick: Tick, memory: &mut CommonMemory) -> Result<bool, DecodeError> {
                 let mut complete = true;

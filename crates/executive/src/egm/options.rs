@@ -176,7 +176,7 @@ impl EgmOptions {
         set
     }
 
-    /// The robot's file; if none is named, that of a robot in the place of the T3.
+    /// The robot's file. If none is named, the frames of `same.toml`: a robot that replaces the T3.
     pub fn file(&self, data: &Path) -> Result<RobotFile, PlacementError> {
         let Some(robot) = &self.robot else { return Ok(RobotFile::default()) };
         RobotFile::load(&ROBOTS.find(Path::new(robot), data)?)

@@ -103,7 +103,7 @@ pub struct PartView {
     pub id: u32,
     /// Its name at present.
     pub name: Name16,
-    /// A location: a unit, that of the vise, the drum or the pedestal, `gripper`, `floor` or `elsewhere`.
+    /// A location: a unit, the location of the vise, the drum or the pedestal, `gripper`, `floor` or `elsewhere`.
     pub location: Name16,
     /// The nearest sector of the unit; 0 elsewhere.
     pub sector: u16,

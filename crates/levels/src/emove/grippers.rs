@@ -254,7 +254,7 @@ impl Grippers {
         self.order == FingerVerb::Release && self.status(tick, memory) == Lower::Done
     }
 
-    /// Without a gripper, that of the parts gripper. Searches renumber the commands (docs/evidence.md).
+    /// Without a gripper, the command of the parts gripper. Searches renumber the commands (docs/evidence.md).
     pub const fn commander(&mut self, of: EmoveGripper) -> &mut Commander {
         match of {
             EmoveGripper::None | EmoveGripper::Parts => &mut self.parts,

@@ -8,7 +8,7 @@ use rcs_core::tick::Tick;
 
 use crate::{image::Image, search::Wrong};
 
-/// Openings with the part, closed and empty, and half-way through an order to open, 0.01 in.
+/// Openings, 0.01 in: with the part, closed and empty, and half-way through an order to open.
 const PART: i32 = 66;
 const PASSED: i32 = 54;
 const HALF: i32 = 80;

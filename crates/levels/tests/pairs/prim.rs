@@ -419,7 +419,7 @@ impl Pair {
         self.tool.is_some_and(|tool| tool.moves()) || self.change.is_some_and(|change| change.turns())
     }
 
-    /// The condition of a GO-UNTIL should be met, that of a GO-WHILE should not.
+    /// The condition of a GO-UNTIL should be met. The condition of a GO-WHILE should not be met.
     fn is_fault(&self, happens: Happens) -> bool {
         match happens {
             Happens::Nothing | Happens::Arrive | Happens::Stick => false,

@@ -343,8 +343,8 @@ impl Scene for Around {
         }
     }
 
-    /// Omits what no row tests: reasons, numbers of poses, the text of a command that has ended, and step and command of
-    /// an idle process.
+    /// Omits what no row tests: reasons, numbers of poses, the text of a command that has ended, and step and command
+    /// of an idle process.
     fn image(pair: &Pair) -> Vec<u8> {
         let mut image = Image::new(pair.tick, ANSWER_LIMIT, &[]);
         let mut it = pair.clone();

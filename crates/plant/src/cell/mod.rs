@@ -181,7 +181,7 @@ impl Cell {
         &self.description
     }
 
-    /// The sensor words after the last tick; before the first tick, those of the initial cell.
+    /// The sensor words after the last tick. Before the first tick, the sensor words of the initial cell.
     #[must_use]
     pub fn inputs(&self) -> DeviceInputs {
         self.inputs
@@ -300,7 +300,8 @@ impl Cell {
         *self.t3.arm().joints()
     }
 
-    /// The tool frame, in, with the deflection of arm and fingers: between the fingertips, even without a gripper.
+    /// The tool frame, in, including the deflection of arm and fingers. Its origin is between the fingertips, even
+    /// without a gripper.
     #[must_use]
     pub fn tool(&self) -> Frame {
         match self.changer.carried() {

@@ -20,7 +20,7 @@ pub const PART: Group = Group::GROUP_3;
 /// Collision group of the palms of hands: a held part still collides with the palm.
 pub const PALM: Group = Group::GROUP_6;
 
-/// Distance of the backs of the movable jaw behind those of the fixed one, in, so that no back drags the part.
+/// The backs of the movable jaw are this far behind the backs of the fixed jaw, in, so that no back drags the part.
 const RELIEF: f64 = 0.02;
 
 const FRICTION: Real = 0.30; // coefficient of friction of steel on trays, vise and floor
@@ -71,7 +71,7 @@ impl Block {
         self.kind == Kind::Vise
     }
 
-    /// Its colour; for a bench, that of its top.
+    /// Its colour; for a bench, the colour of its top.
     #[must_use]
     pub fn colour(&self) -> Material {
         match (self.kind, self.name.as_str()) {

@@ -63,7 +63,7 @@ impl Material {
         Look { colour, metal, rough, light }
     }
 
-    /// The colour of a kind of part: that of its family.
+    /// The colour of a kind of part, which its family determines.
     #[must_use]
     pub fn of_part(kind: &PartType) -> Self {
         match Family::of(kind) {

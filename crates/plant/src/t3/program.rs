@@ -11,7 +11,7 @@ use geometry::{
 
 use super::{Cut, Message, RobotEvent, SetPoint, Stage, StepInputs, StepOutputs, T3Controller};
 
-/// Speed of motions that the controller makes by itself: that of the fastest joint, degrees/s (ASSUMED).
+/// Speed of the fastest joint in motions that the controller makes by itself, degrees/s (ASSUMED).
 const OWN_SPEED: f64 = 10.0;
 /// Height of the two short vertical motions of the program, up and down again, in (ASSUMED).
 const VERTICAL_IN: f64 = 1.0;

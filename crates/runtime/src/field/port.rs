@@ -20,7 +20,8 @@ use interfaces::DeviceInputs;
 
 use crate::{boards::Controller, config::RunConfig, error::StartError, observer::Observer};
 
-/// Time after the watchdog's for which a device may refuse its set-up, until an earlier run's watchdog has fired.
+/// Added to the time of the watchdog. Until then a device may refuse its set-up, because the watchdog of an earlier run
+/// may not have fired yet.
 const REFUSED_FOR: Duration = Duration::from_secs(2);
 const PAUSE: Duration = Duration::from_millis(10); // pause between two looks at devices that are not ready
 

@@ -1,4 +1,4 @@
-//! The messages for clients: channels, the newest message of each, those of the last minute, and a queue per client.
+//! The messages for clients: channels, the newest message of each, the last minute of messages, and a queue per client.
 //!
 //! A client that subscribes receives the newest message of the channel at once, with the present time. For transforms
 //! it receives the newest ones of all links. A client that has requested the past instead receives the state at its

@@ -176,7 +176,7 @@ impl Store {
         }
     }
 
-    /// Files for a log: those of the first load, then of each [`Store::with_blocks`].
+    /// Files for a log: the files of the first load, then the files of each [`Store::with_blocks`].
     #[must_use]
     pub fn sources(&self) -> &[Source] {
         &self.sources

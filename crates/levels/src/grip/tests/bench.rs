@@ -55,8 +55,8 @@ impl World<Grip> for Gripper {
 }
 
 impl Bench {
-    /// A bench with the gripper attached, after one tick without a command, because a command in the first tick is one
-    /// from before a restart.
+    /// A bench with the gripper attached, after one tick without a command. The process treats a command in its first
+    /// tick as an old command from before a restart.
     pub fn new(gripper: Gripper) -> Self {
         Self::boot(gripper, true)
     }

@@ -56,8 +56,8 @@ impl Pair {
         image.bytes
     }
 
-    /// Clears what no row tests: reasons, commands of idle processes, the text of an order that was taken, poses without
-    /// an order, and the time of a ring that has arrived.
+    /// Clears what no row tests: reasons, commands of idle processes, the text of an order that was taken, poses
+    /// without an order, and the time of a ring that has arrived.
     fn forget(&mut self) {
         let executes = forget(&mut self.upper.state);
         let ring = &mut self.lower.state;
