@@ -66,7 +66,8 @@ impl Rules {
         self.allow(to_gateway, &["declare_liveliness_subscriber", "liveliness_query"], cell.alive(ANY));
     }
 
-    /// A reader may ask for the status of all cells at once. It gets that of `cell`, which may be [`ANY`].
+    /// A reader may ask for the status of all cells at once, but receives only the status of `cell`, which may be
+    /// [`ANY`].
     fn status(&mut self, cell: &CellKeys, to_reader: Flow) {
         let (every, from_reader) = (CellKeys::of(ANY), to_reader.reverse());
         self.allow(from_reader, &["declare_subscriber"], every.status());

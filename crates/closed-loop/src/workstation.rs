@@ -14,7 +14,7 @@ use crate::field::Field;
 /// 40 s; an arm that slides off an obstacle takes twice as long.
 const SETTLING_LIMIT: u64 = 120_000 / TICK_MS;
 
-/// Refusal of a job with a hand-over in a run without access for a workstation controller.
+/// Refuses a job that hands over to a workstation controller, in a run to which none can connect.
 const NO_HAND_OVER: &str = "no workstation controller can connect to this run; \
                             --network ADDRESS --outside workstation --stand-alone lets one";
 

@@ -49,7 +49,7 @@ pub struct Problem {
     pub nearest: Option<String>,
     /// Key that equal problems in several lines share. With `None`, the message is the key.
     pub same: Option<String>,
-    /// Names of data, one of which is probably wrong. Empty if it is the underlined text.
+    /// Names of data, one of which is probably wrong. Empty if the underlined text is wrong.
     pub data: Vec<String>,
 }
 

@@ -74,7 +74,7 @@ pub enum Variable {
     /// Task: the unfinished command. Without it the same command starts from the beginning.
     #[text = "task.ledger"]
     Ledger,
-    /// Task: updates that the Data System has not accepted. Without them it does not learn of those moves.
+    /// Task: updates that the Data System has not accepted. If they are deleted, its database lacks these moves.
     #[text = "task.updates.pending"]
     Pending,
     /// Subtask: the part in the pedestal's hand.

@@ -1,4 +1,4 @@
-//! The rows in the header of a process: those that fired, when, and for which state variables.
+//! The rows in the header of a process: which rows fired, when, and for which state variables.
 
 use interfaces::{Basis, Consulted, Decided, Header};
 use rcs_core::{Plain, header::BESIDE, name::Name16, table::Choice, tick::Tick};

@@ -238,8 +238,8 @@ fn getter(file: &str) -> String {
     format!("module_{}", stem.replace('-', "_"))
 }
 
-/// Removes comments, indentation and empty lines. Every `/*` begins a comment, and a text over several lines loses its
-/// indentation. The sources have neither where it matters.
+/// Removes comments, indentation and empty lines. It treats every `/*` as a comment, also in a text, and removes the
+/// indentation of a text over several lines. The sources have no text for which this matters.
 fn compact(source: &str) -> String {
     let mut code = String::with_capacity(source.len());
     let mut rest = source;

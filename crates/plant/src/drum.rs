@@ -1,8 +1,8 @@
 //! The tool drum of the machine tool at its transfer position: the place of a tool, fingers, and a strike plate.
 //!
 //! The drum's frame is the tool frame of TOOL-TRNS: X into the drum. Near the end of the insertion, detents resist with
-//! a rising force; afterwards they keep the tool with a smaller one. Closed fingers stop it with a hundred pounds. The
-//! fingers hold a tool more strongly than the robot, whose hold slides first.
+//! a rising force. In the inserted position they hold the tool with a smaller force. Closed fingers stop it with a
+//! hundred pounds. The fingers hold a tool more strongly than the robot, whose hold slides first.
 //!
 //! Detents and obstacles are one spring along X whose far end slides at the limit of the force: a tool comes to rest,
 //! and a force sensor reads a steady value.

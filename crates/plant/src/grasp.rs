@@ -62,8 +62,8 @@ pub fn widest(opening: f64, parts: impl Iterator<Item = (usize, Squeeze)>) -> Op
         .max_by(|(_, a), (_, b)| a.width.total_cmp(&b.width))
 }
 
-/// Opening at which a part stops the fingers, in. A `fast` part, which another device holds, stops the nearer finger,
-/// and with it the other one.
+/// Opening at which a part stops the fingers, in. A part that another device holds is `fast`. It stops
+/// the nearer finger, and so the other finger too.
 #[must_use]
 pub fn stop(squeeze: &Squeeze, fast: bool) -> f64 {
     let aside = if fast { 2.0 * squeeze.centre.abs() } else { 0.0 };

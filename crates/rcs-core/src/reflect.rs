@@ -65,7 +65,8 @@ pub struct Within<'a> {
 }
 
 impl Leaf<'_> {
-    /// Positions and values of the bytes that an image with this field has: option flags and variant codes.
+    /// The option flags and variant codes that an image must have so that it contains this field: positions and values
+    /// of the bytes.
     pub fn given(&self) -> impl Iterator<Item = (usize, u8)> {
         core::iter::successors(self.within, |within| within.outer).map(|within| (within.at, within.code))
     }

@@ -2,7 +2,7 @@
 //!
 //! * [`Plain`](macro@Plain): fixed-size data with a byte image and a schema;
 //! * [`Variables`]: the state variables of a decision table;
-//! * [`macro@state_variables`]: methods that sense state variables; each table uses those that it tests;
+//! * [`macro@state_variables`]: methods that sense state variables; each table senses only the variables that it tests;
 //! * [`Actions`]: the actions of a decision table's rows;
 //! * [`decision_table!`]: a decision table as one exhaustive `match`;
 //! * [`commands!`]: the commands of a process and the tables that decide about them.

@@ -1,4 +1,4 @@
-//! The decision tables by which a log is explained: its own ones, or those of this program.
+//! The decision tables that explain a log: the tables in the log, or the tables of this program.
 //!
 //! A log names rows by numbers, which change when a row is added. So the tables attached to the log
 //! ([`crate::explanation`]) are used. A program that reads a log ends soon, so they are never freed.

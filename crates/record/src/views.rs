@@ -175,7 +175,7 @@ messages! {
         state: Cow<'static, str>,
         /// Age of its inputs, ms.
         age_ms: u64,
-        /// Its input words, as they were read last.
+        /// Its input words at the last read.
         inputs: Vec<u32>,
         /// The output words of the controller.
         commanded: Vec<u32>,

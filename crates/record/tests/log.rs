@@ -369,7 +369,7 @@ fn messages_are_played_in_time_order() {
     assert_eq!(tap.0.lock().unwrap().0, summary.stats.unwrap().message_count);
 }
 
-/// A log in memory, whose ticks `change` modifies before they are written; it omits those for which it returns false.
+/// A log in memory. `change` modifies each tick before it is written, or returns false to omit the tick.
 fn changed(ticks: u64, mut change: impl FnMut(&mut TickRecord) -> bool) -> Vec<u8> {
     let mut file = Cursor::new(Vec::new());
     let mut log = LogWriter::create(&mut file, setup()).unwrap();

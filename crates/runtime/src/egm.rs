@@ -62,7 +62,7 @@ impl EgmPort {
                 let real = config.clock == ClockKind::Real;
                 let prepare = move || {
                     if real {
-                        // The run reports missing settings for its own thread. This thread gets at most the same ones.
+                        // The run reports missing settings for its own thread. This thread gets no others.
                         let _ = realtime::raise_priority(realtime::PRIORITY);
                     }
                 };

@@ -223,7 +223,7 @@ impl BoardFiles {
     }
 }
 
-/// The reloads, with that in a file; `None` if the file does not exist or has errors.
+/// The reloads, including the reload in a file. `None` if the file does not exist or has errors.
 fn with_load(run: &RunName, first: &Store, reloads: &[Reload], load: u32) -> Option<(Reloads, u64)> {
     let (done, source) = read(&load_file(run, load))?;
     let base = match done.checked_sub(1) {

@@ -47,7 +47,7 @@ pub fn forget(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick) {
 
 /// Number the commands of each process backwards; the newest becomes [`NEWEST`].
 fn count_commands(memory: &mut CommonMemory, ladder: &mut LadderState, now: Tick) {
-    // Takes a commander, the number in its buffer, and the echoes in the subordinate's state and status.
+    // Arguments: a commander, the number in its buffer, and the echoes in the state and the status of the subordinate.
     macro_rules! count {
         ($(
             $above:ident: $commander:expr, $command:ident => $below:ident $(. $execution:ident)?;

@@ -48,7 +48,7 @@ pub struct PartArguments {
     /// for a cylinder length x diameter
     #[arg(long, value_name = "LxWxH|LxD")]
     pub size: Size,
-    /// A part of the cell; the new part is handled as this one
+    /// A part of the cell; the new part is handled like this one
     #[arg(long, value_name = "PART")]
     pub like: String,
     /// Write the files; without this option they are only shown
@@ -74,7 +74,7 @@ pub struct ToolArguments {
     /// Weight, pounds [default: scaled by volume from the tool of --like]
     #[arg(long, value_name = "LB")]
     pub weight: Option<f64>,
-    /// A tool of the cell; the new tool is handled as this one
+    /// A tool of the cell; the new tool is handled like this one
     #[arg(long, value_name = "TOOL")]
     pub like: String,
     /// Write the files; without this option they are only shown
@@ -108,7 +108,7 @@ pub struct PlaceArguments {
     /// Rotation of the finger point about the axis of the tool, degrees
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0)]
     pub roll: f64,
-    /// A location point; the new place is reached as this one
+    /// A location point; the new place is reached like this one
     #[arg(long, value_name = "PLACE")]
     pub like: String,
     /// Write the files; without this option they are only shown
@@ -129,7 +129,7 @@ pub struct TrayArguments {
     /// The centre of the tray, in the units of --units
     #[arg(value_names = ["X", "Y"], num_args = 2, required = true, value_parser = length)]
     pub centre: Vec<f64>,
-    /// A tray of the cell; the new tray is used as this one
+    /// A tray of the cell; the new tray is used like this one
     #[arg(long, value_name = "UNIT")]
     pub like: String,
     /// Write the files; without this option they are only shown

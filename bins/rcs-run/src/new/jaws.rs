@@ -51,7 +51,7 @@ pub struct Chosen {
     pub behind: f64, // distance before the back where the part is released, in
 }
 
-/// The first step that fits: the like part's step, another one, or a new one. The error has one line per step.
+/// The first step that fits: the step of the like part, another step, or a new step. The error has one line per step.
 pub fn choose(vise: &Vise, like: &ViseProgram, name: &str, wanted: &Wanted) -> Result<Chosen, Vec<String>> {
     let others = vise.program.iter().filter(|other| other.name != like.name);
     let mut reasons: Vec<String> = Vec::new();

@@ -87,7 +87,7 @@ impl Session {
         {
             return Err(Stop::Refused(Refusal::Lengths(lengths)));
         }
-        // A watchdog that fired in an earlier run refuses outputs and settings until it is reset.
+        // A device whose watchdog fired in an earlier run refuses outputs and settings until the watchdog is reset.
         for word in bk9000::RESET {
             self.write_register(link, bk9000::WATCHDOG_RESET, word)?;
         }

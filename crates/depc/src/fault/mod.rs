@@ -258,7 +258,7 @@ impl Plan {
         self.rules.get(..usize::from(self.count)).unwrap_or_default()
     }
 
-    /// Appends a rule. Refuses one that is invalid alone or together with earlier ones.
+    /// Appends a rule. Refuses a rule that is invalid by itself, or that conflicts with an earlier rule.
     pub fn add(&mut self, rule: Rule) -> Result<(), Refusal> {
         rule.check()?;
         for (number, other) in (1_u8..).zip(self.rules()) {

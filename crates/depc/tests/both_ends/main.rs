@@ -25,7 +25,7 @@ use model::{Carried, Event, KINDS, Kind, Panel, QUIET, Setting, Wrong};
 const BOUND: u32 = RESTART + 11;
 const RESTART: u32 = depc::host::RESTART_TICKS as u32;
 
-/// A serial line does not duplicate frames; one that does can deceive this protocol together with another fault.
+/// A serial line does not duplicate frames. A duplicated frame together with another fault can deceive this protocol.
 const fn is_doubling(kind: Kind) -> bool {
     matches!(kind, Kind::CommandDoubled | Kind::AnswerDoubled)
 }

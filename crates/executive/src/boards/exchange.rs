@@ -1,9 +1,9 @@
 //! Data exchange of the boards: the outputs of each process, doubled by tick parity, and its state.
 //!
-//! Each process has one service with three slots ([`crate::memory::slot`]). A reader that finds another stamp than the
-//! one it needs reads nothing: the outputs keep their old stamp, and the neighbours treat the process as lost
-//! (docs/design/handshake.md "Stamp"). The service's name contains the board's epoch: a board that replaces a killed
-//! one creates services of the next epoch.
+//! Each process has one service with three slots ([`crate::memory::slot`]). A reader needs the stamp of one tick. If it
+//! finds another stamp, it reads nothing: the outputs keep their old stamp, and the neighbours treat the process as
+//! lost (docs/design/handshake.md "Stamp"). The service's name contains the board's epoch: a board that replaces a
+//! killed one creates services of the next epoch.
 
 use iceoryx2::{node::Node, prelude::ipc};
 use interfaces::{CommonMemory, for_each_process, process::Process};
@@ -107,8 +107,7 @@ macro_rules! exchange {
         }
 
         impl Writers {
-            /// Create the services of a board's processes; one that exists means that another process runs the same
-            /// board.
+            /// Create the services of a board's processes. If a service exists, another process runs the same board.
             pub fn create(
                 node: &Node<ipc::Service>,
                 board: Board,

@@ -4,8 +4,8 @@
 //! tick arrives with the pulse; it never reads a clock.
 //!
 //! A board that replaces a killed one finds a pulse without an answer. It latches the outputs of its predecessor and
-//! writes them with its own epoch: its neighbours read the same as before. It restarts the processes, which adopt the
-//! numbers of their commands and report the restart (docs/design/handshake.md "Restart").
+//! writes them with its own epoch, so its neighbours read the same values as before. It restarts the processes, which
+//! adopt the numbers of their commands and report the restart (docs/design/handshake.md "Restart").
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
@@ -101,7 +101,7 @@ struct Ports {
     taker: PulseTaker,
     writers: Writers,
     reports: ReportWriter,
-    // The neighbours with the epochs with which they were opened.
+    // The neighbours, each with the epoch in which it was opened.
     neighbours: [Option<(Epoch, Readers)>; BOARDS],
     node: RunNode,
 }

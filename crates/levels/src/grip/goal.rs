@@ -45,7 +45,7 @@ impl GripGoal {
         }
     }
 
-    /// The greatest flow that is not faster than the commanded speed; the fine flow is the slowest.
+    /// The greatest flow that does not exceed the commanded speed. If all exceed it, the fine flow.
     pub(super) fn greatest_flow(&self) -> AirFlow {
         match self.speed {
             None => AirFlow::Coarse,

@@ -209,7 +209,7 @@ fn emove_and_tool_grip_with_a_restart() {
     grasping::<ToolGrip>("E-move and Tool-Grip, a restart", commands, (Some(early), 1), (67, 76));
 }
 
-/// The robot moves elsewhere with its object, and back, with it or with open fingers.
+/// The robot moves away with its object, and back with the object or with open fingers.
 const AWAY: emove::Line = (EmoveVerb::MovToLoc, Some("SAFE"));
 const BRING_BACK: emove::Line = (EmoveVerb::MovObjTo, None);
 const BACK: emove::Line = (EmoveVerb::MovToObj, None);

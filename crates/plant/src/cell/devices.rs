@@ -122,7 +122,7 @@ impl Devices {
             .zip(values)
             .filter_map(|(output, value)| Some(((*output)?, *value)))
             .collect();
-        // A start in the same image as its program is of this program.
+        // A start in the same image as a change of the program starts the new program.
         outputs.sort_by_key(|(output, _)| !matches!(output, Output::ViseProgram | Output::MachineProgram(_)));
         let mut openings = Vec::new();
         for (output, value) in outputs {

@@ -175,7 +175,7 @@ impl Cell {
         }
     }
 
-    /// Called when the other holder has released the part: a hand that holds it draws it to its middle.
+    /// Called when the other holder has released the part. The part then moves to the middle of `hand`.
     pub(super) fn recover(&mut self, hand: Hand, index: usize) {
         let (gripper, world) = self.hand_at_work(hand);
         if let Some((_, hold)) = gripper.hold.as_mut().filter(|(held, _)| *held == index) {

@@ -1,4 +1,5 @@
-//! Machining: a part at its place, clamped in the vise or in a nest, is replaced by the part that machining makes of it.
+//! Machining: a part at its place, clamped in the vise or in a nest, is replaced by the part that machining makes of
+//! it.
 
 use geometry::frame::{Frame, Vector as Inches, rotation_vector};
 

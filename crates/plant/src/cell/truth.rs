@@ -11,7 +11,7 @@ use crate::{
     hand::{Hand, ROBOT_HANDS},
 };
 
-/// Fingers slower than this are at rest, in/s. Those that press a part follow its sway.
+/// Fingers slower than this are at rest, in/s. Fingers that press a part follow its sway, so the limit is not zero.
 const STILL: f64 = 0.05;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -141,13 +141,15 @@ impl Ideal {
         self.carry();
     }
 
-    /// Release the part of a hand. Another hand that holds it draws it to its middle; without one, it comes to rest.
+    /// Release the part of a hand. If another hand also holds the part, the part moves to the middle of that hand.
+    /// Otherwise it comes to rest.
     pub(super) fn release(&mut self, hand: Hand) {
         let Some(hold) = self.fingers_mut(hand).hold.take() else { return };
         self.recover(hold.part);
     }
 
-    /// A holder has released a part: a hand that holds it draws it to its middle; else it comes to rest.
+    /// Called when a holder has released a part. If a hand holds the part, the part moves to the middle of that hand.
+    /// Otherwise it comes to rest.
     pub(super) fn recover(&mut self, part: usize) {
         if self.is_fixed(part) {
             return;

@@ -70,7 +70,7 @@ pub enum FormatError {
     Length { found: usize },
     #[error("the head of the journal is damaged")]
     Head,
-    /// The program that wrote it has other buffers.
+    /// The journal was written by a program with other buffers.
     #[error(
         "its buffers have layout {found:016x}, this program {expected:016x}: use the program that wrote it{}",
         by(.program)

@@ -20,7 +20,8 @@ use crate::{
     operator::{A_TICK, Around, Input, Later, WORKSTATION},
 };
 
-/// Longest wait for a robot that is coming to rest after a motion by hand: less than the second of the sender.
+/// Longest wait for a robot that is coming to rest after a motion by hand. It is less than the second for which the
+/// sender of a request waits.
 const REST_TICKS: u64 = 20;
 
 impl Run {

@@ -28,7 +28,8 @@ pub fn here(store: Store, answer_ticks: u64, pace: Pace) -> DataSystem {
     DataSystem::new(Threaded::here(store, pace), answer_ticks)
 }
 
-/// A Data System in another process. In a run that waits, its answers take as many ticks as those of a server here.
+/// A Data System in another process. In a run that waits for its neighbours, its answers take as many ticks as the
+/// answers of a server in this process.
 #[must_use]
 pub fn elsewhere(agent: Agent, pace: Pace) -> DataSystem {
     let ticks = if pace == Pace::Wait { ANSWER_TICKS } else { 0 };

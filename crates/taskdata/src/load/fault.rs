@@ -1,8 +1,9 @@
 //! Errors of task data that are used nevertheless, and the commands that each error concerns.
 //!
 //! The error of a record concerns the commands that use the record. Any other error may have removed entries of its
-//! block. It concerns the commands for the objects that the block names; otherwise those that use its names or
-//! records. Without known names it concerns all commands that use task data.
+//! block. If the block names objects, the error concerns the commands for these objects. Otherwise it concerns the
+//! commands that use names or records of the block. If no name of the block is known, it concerns all commands that
+//! use task data.
 
 use diagnostics::{At, Diagnostic, Source};
 use interfaces::HwsCommand;

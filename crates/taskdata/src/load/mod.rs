@@ -84,7 +84,7 @@ impl Store {
     /// locations get new numbers.
     ///
     /// All blocks of the texts are loaded, unless the texts have a root directory block, which may also name existing
-    /// blocks. The whole new generation is checked. An error that these data do not have prevents it.
+    /// blocks. The whole new generation is checked. An error that is not in the present data prevents the load.
     pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let (part, report) = match self.loaded_with(texts, Problems::default()) {
             Ok(loaded) => return Ok(loaded),

@@ -102,7 +102,8 @@ impl Orphans {
         }
     }
 
-    /// Marks orphans that another orphan names. Returns the orphans that name others, each with their number.
+    /// Marks orphans that another orphan names. Returns the orphans that name others, each
+    /// with the number of orphans that it names.
     fn gather(&mut self) -> BTreeMap<BlockNumber, usize> {
         let named: HashSet<BlockNumber> =
             self.list.iter().flat_map(|orphan| &orphan.loads).map(|line| line.block).collect();
@@ -194,8 +195,9 @@ impl Orphans {
         near.min_by_key(|orphan| slip(orphan))
     }
 
-    /// The loaded directory block that should name an orphan: the last one before it, or else the one that names the
-    /// nearest number. A directory belongs to one that names directories.
+    /// The loaded directory block that should name an orphan: the last one before the orphan. If there is none, the
+    /// directory block that names the nearest number. An orphan that is itself a directory belongs to a block that
+    /// names directories.
     fn directory_of(&self, orphan: &Orphan) -> Option<BlockNumber> {
         let is_directory = |block: &BlockNumber| self.directories.contains_key(block);
         let fits = |(directory, named): &(&BlockNumber, &Vec<BlockNumber>)| {

@@ -35,7 +35,7 @@ impl Taken {
     /// Takes registers for a point.
     ///
     /// # Errors
-    /// The point that has one of them already.
+    /// The point that already uses one of the addresses.
     pub(super) fn take(
         &mut self,
         name: &str,

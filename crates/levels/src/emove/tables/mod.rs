@@ -1,5 +1,5 @@
 //! Decision tables of E-move: preconditions of a new command, rows common to all commands, and one file per command.
-//! The motion commands share MOTION; each has its own table before it.
+//! The motion commands share MOTION; each command has a table of its own, which is consulted before MOTION.
 
 pub mod accept;
 pub mod acquire_tool;

@@ -80,7 +80,7 @@ impl Bench {
         bench
     }
 
-    /// The hand answers its last command. Fingers that are as wide as an object of 2.56 in have it between them.
+    /// The hand answers its last command. Fingers at the width of an object, 2.56 in, hold the object.
     fn hand(&mut self, report: GripReport, position: i32) -> &mut Self {
         let status = &mut self.memory.hand.status;
         (status.echo, status.report, status.position) = (self.memory.pedestal.hand.number, report, position);

@@ -166,7 +166,7 @@ pub struct StateVariables {
     pub asked: Asked,
     /// The work that a new command replaces; [`joystick::JOYSTICK`] decides on `joystick`.
     pub replaced: Replaced,
-    /// Its verb, or that of the current one.
+    /// The verb of the new command, or of the current one.
     pub verb: TaskVerb,
     /// The new command looked up, or the current one.
     pub plan: Plan,

@@ -1,8 +1,9 @@
 //! The quick change at the right holster: the ring as E-move sees it, the gripper on the robot or in the holster,
 //! and the sensors of the holster as Prim reads them.
 //!
-//! A gripper that the ring releases rests on the holster, and a robot whose pins reach it pushes it along. If it is
-//! together with the robot, the ring catches it when it locks. Its fingers are set to pass through the holster.
+//! A gripper that the ring releases rests on the holster, and a robot whose pins reach it pushes it along. If the
+//! gripper is at the robot's flange, the ring catches it when it locks. Its fingers are set to pass through the
+//! holster.
 
 use geometry::frame::Frame;
 use interfaces::{

@@ -38,7 +38,7 @@ const ZERO: u16 = FORCE_ZERO as u16;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Happens {
     Nothing,
-    /// Moving fingers arrive; if they close at the tool, they have it between them.
+    /// Moving fingers arrive. If they close at the tool, the tool is then between them.
     Arrive,
     Stick,
     Contact, // the condition of the guarded move is met
