@@ -7,8 +7,8 @@ MODULE EgmPose
     ! 1. Controller configuration (Communication, UDP Unicast Device, or "Transmission Protocol" with type
     !    UDPUC): name UCdevice, remote address = the host, remote port = 6510.
     ! 2. Motion configuration (External Motion Interface Data), the data named in EGMSetupUC:
-    !    "Do Not Restart after Motors Off" = TRUE. With FALSE the robot goes on by itself when the motors come
-    !    on after an emergency stop, to a target that is old.
+    !    "Do Not Restart after Motors Off" = TRUE. With FALSE the robot continues by itself when the motors are
+    !    switched on after an emergency stop, to an old target.
     !    Level = filtering (the default), default proportional position gain 5, default low pass 20 Hz.
     ! 3. Set toolHost and wobjHost below to what data/robots/*.toml of the host says. Wrong frames are wrong
     !    motions.
@@ -16,18 +16,18 @@ MODULE EgmPose
     !
     ! SAFETY
     ! * The first runs: manual mode, reduced speed (250 mm/s), enabling device in hand, the speed knob of the
-    !   host low, no person within the fence. Automatic mode only with the fence closed.
-    ! * The robot moves at any time the host sends another target. A message can be lost on its way: the robot
+    !   host low, nobody within the fence. Automatic mode only with the fence closed.
+    ! * The robot can move at any time, whenever the host sends another target. A message can be lost on its way: the robot
     !   then keeps its last target and its last speed reference, until \CommTimeout ends EGM.
     ! * A host that stops sending: \CommTimeout below, 0.2 s. A robot that stops sending: the host ends its
     !   path after 0.12 s and starts again only from where the robot is.
-    ! * UDP has no authentication: the robot and its host on a network of their own, with nothing else on it.
+    ! * UDP has no authentication: give the robot and its host a network of their own.
 
     ! The tool and the work object of [tool] and [world] in the host's file. Position mm, quaternion w x y z.
     PERS tooldata toolHost := [TRUE, [[0,0,0],[1,0,0,0]], [5,[0,0,100],[1,0,0,0],0,0,0]];
     TASK PERS wobjdata wobjHost := [FALSE, TRUE, "", [[0,0,0],[1,0,0,0]], [[0,0,0],[1,0,0,0]]];
 
-    ! Where EGM begins: teach it. The host begins its path where the robot stands.
+    ! Position at which EGM starts: teach it. The path of the host starts at the present position of the robot.
     CONST jointtarget jStart := [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
 
     VAR egmident egmId;
@@ -57,7 +57,7 @@ MODULE EgmPose
         EGMRunPose egmId, EGM_STOP_RAMP_DOWN \x \y \z \rx \ry \rz \CondTime:=3600 \RampInTime:=0.5;
         EGMReset egmId;
     ERROR
-        ! No message of the host in time: stand. A person looks, and starts the program again.
+        ! No message of the host in time: stop. The operator checks the robot and starts the program again.
         IF ERRNO = ERR_UDPUC_COMM THEN
             TPWrite "EGM: the host has sent nothing within 0.2 s";
         ELSE

@@ -1,9 +1,8 @@
 """A small EGM robot, written from egm.proto alone: it shares no code with the project.
 
-Sends EgmRobot every 4 ms to the port that is named, moves to each target that comes back, at once, goes on with
-the speed that came with it, and checks what it gets: message type, growing sequence number, unit quaternion,
-finite numbers, and no step of more than 25 mm. Ends 3 s after the last answer, or after the seconds that are
-named, and prints one line of JSON.
+Sends EgmRobot to PORT every 4 ms. Moves to each received target without delay, and continues with the speed in
+the same message. Checks each message: message type, growing sequence number, unit quaternion, finite numbers, and
+no step of more than 25 mm. Ends 3 s after the last answer, or after SECONDS, and prints one line of JSON.
 
     python3 peer.py PORT SECONDS X Y Z [W QX QY QZ]
 """

@@ -150,7 +150,7 @@ fn carry(mut from: UnixStream, mut to: UnixStream, stalls: &AtomicBool) {
     let _ = to.shutdown(Shutdown::Both); // the other end may have closed already
 }
 
-/// The run cannot measure the delay of a request with its own clock; the request's limit serves for that.
+/// The run cannot measure with its own clock how long a request was delayed. So each request carries a time limit.
 #[test]
 fn command_delayed_by_a_stalled_line_is_discarded() {
     let scratch = Scratch::new("stalled");

@@ -19,7 +19,7 @@ use crate::{
 };
 
 const GRIPPERS: [&str; 3] = ["parts_gripper", "v_gripper", "tool_gripper"];
-/// Greatest distance of the centre of a part in a nest from that of the seat, in.
+/// Greatest distance between the centre of a part in a nest and the centre of the seat, in.
 const IN_NEST: f64 = 1.0;
 /// Step in which a part is lowered, in, and number of times that the last step is halved.
 const STEP: f64 = 0.02;

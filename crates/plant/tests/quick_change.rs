@@ -242,7 +242,7 @@ fn part_is_lost_when_the_air_is_cut() {
     assert!(rig.log.iter().any(|event| matches!(event, CellEvent::Dropped { .. })), "{:?}", rig.log);
 }
 
-/// A person takes the v-gripper, which is not on the robot, out of its holster, and places it in one.
+/// A person takes the v-gripper, which is not on the robot, out of its holster, and places it in a holster.
 #[test]
 fn only_a_detached_gripper_fits_an_empty_holster() {
     let mut rig = Rig::new(&description(), 1);

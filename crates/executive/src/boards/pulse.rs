@@ -110,7 +110,7 @@ pub struct SystemPulse {
 pub struct Checked {
     /// The load.
     pub load: u32,
-    /// [`Fingerprint::data`] of the task data with this load; 0 if it has errors or could not be read.
+    /// [`Fingerprint::data`] of the task data that include this load; 0 if the load has errors or could not be read.
     pub data: u64,
 }
 

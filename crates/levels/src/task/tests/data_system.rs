@@ -553,8 +553,8 @@ fn parts_of_one_name_keep_their_serial_numbers() {
     }
 }
 
-/// The sensors of the gripper fail while a command is accepted. The held object keeps its serial number, and one that
-/// was taken elsewhere gets no update.
+/// The sensors of the gripper fail while a command is accepted. The held object keeps its serial number. An object
+/// that was taken at another place gets no update.
 #[test]
 fn unreadable_gripper_keeps_serial_number_and_origin() {
     const ACQUIRE: &str = "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0";
