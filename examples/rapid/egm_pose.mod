@@ -17,8 +17,8 @@ MODULE EgmPose
     ! SAFETY
     ! * The first runs: manual mode, reduced speed (250 mm/s), enabling device in hand, the speed knob of the
     !   host low, nobody within the fence. Automatic mode only with the fence closed.
-    ! * The robot can move at any time, whenever the host sends another target. A message can be lost on its way: the robot
-    !   then keeps its last target and its last speed reference, until \CommTimeout ends EGM.
+    ! * The robot can move at any time, whenever the host sends another target. A message can be lost on its
+    !   way: the robot then keeps its last target and its last speed reference, until \CommTimeout ends EGM.
     ! * A host that stops sending: \CommTimeout below, 0.2 s. A robot that stops sending: the host ends its
     !   path after 0.12 s and starts again only from where the robot is.
     ! * UDP has no authentication: give the robot and its host a network of their own.

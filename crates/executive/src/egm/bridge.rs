@@ -132,8 +132,8 @@ impl Bridge {
         }
     }
 
-    /// Supervises the robot: a robot off the path of its expected lag is stopped. This is for hosts without feedback from
-    /// the robot. The T3 Interface supervises the robot itself (docs/design/link.md "Following").
+    /// Supervises the robot: a robot off the path of its expected lag is stopped. This is for hosts without feedback
+    /// from the robot. The T3 Interface supervises the robot itself (docs/design/link.md "Following").
     #[must_use]
     pub fn supervised(self, lag_ms: u16) -> Self {
         Self { supervision: Some(Supervision { track: Track::default(), lag_ms }), ..self }

@@ -14,7 +14,7 @@ use crate::{
 
 /// Greatest height above a tray's floor at which a part is in the tray, in (ASSUMED: tall tools).
 const IN_TRAY: f64 = 10.0;
-/// Greatest distance of the centre of a part in a nest from that of the seat, in.
+/// Greatest distance between the centre of a part in a nest and the centre of the seat, in.
 const IN_NEST: f64 = 1.0;
 const DROP: f64 = 0.002; // a part is put down this far above the surface on which it comes to rest, in
 

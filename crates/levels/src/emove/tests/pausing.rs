@@ -287,7 +287,8 @@ fn operator_moves_robot_and_fingers() {
             (StatusReport::Done, Reason::None, "VISE")
         );
     }
-    // Without frame switches the buttons also work. If the switch is turned during a pause, the operator controls the robot.
+    // Without frame switches the buttons also work. If the switch is turned during a pause, the operator controls the
+    // robot.
     let mut bench = Bench::ready("HOME", 1);
     bench.world.joystick = true;
     assert_eq!(bench.pause(), (StatusReport::JoystickOn, Reason::JoystickOn));
