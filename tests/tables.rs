@@ -1,7 +1,7 @@
 //! Rows and columns of decision tables in the sources. [`aligned`] arranges the number, the conditions, `=>` with the
-//! action, and `->` with the next step in columns, and the variables of adjacent rows with the same ones. A line has
-//! at most [`WIDEST`] columns. If a row becomes wider, variables are not aligned; then the rows with the longest
-//! conditions leave the columns. A still wider row has its action in a second line.
+//! action, and `->` with the next step in columns. Adjacent rows that test the same variables have these in columns
+//! too. A line has at most [`WIDEST`] columns. If a row becomes wider, variables are not aligned; then the rows with
+//! the longest conditions leave the columns. A still wider row has its action in a second line.
 
 use std::{
     fs, io,

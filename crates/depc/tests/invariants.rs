@@ -2,9 +2,9 @@
 //! once the line is repaired and the operator has answered, the goal is reached.
 //!
 //! Unless the line deceives one end: no command is executed twice or lost silently, every report is true, and the
-//! limits give no warning. A checksum by exclusive or does not detect two changes of the same bit, ACK, NAK, cancel
-//! and restart have none (A 2.3), and a long stall delivers commands that the host has given up. These cases are
-//! counted. `DEPC_SCHEDULES` sets the number of plans.
+//! limits give no warning. These cases deceive an end, and are counted: two changes of the same bit, which a checksum
+//! by exclusive or does not detect; changes in ACK, NAK, cancel and restart, which have no checksum (A 2.3); and a long
+//! stall, which delivers commands that the host has given up. `DEPC_SCHEDULES` sets the number of plans.
 
 #![expect(clippy::print_stdout, reason = "the figures of a campaign are printed")]
 

@@ -77,8 +77,8 @@ impl Vision {
         Self { camera: camera.clone(), request, answer, taken: 0, seen: None }
     }
 
-    /// Take a picture for a new request. Returns the drawing of the last one when it has been answered, or when
-    /// the next request replaces it, since an answer often leads to the next request in the same tick.
+    /// Take a picture for a new request. Returns the drawing of the last picture when its request has been answered, or
+    /// when the next request replaces it: an answer often leads to the next request in the same tick.
     fn look(&mut self, cell: &Cell) -> Option<Vec<u8>> {
         let VisionRequest { number, picture, .. } = self.request;
         let is_new = number != self.taken && picture != Picture::None;

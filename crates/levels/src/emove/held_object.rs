@@ -168,8 +168,8 @@ impl HeldObject {
         None
     }
 
-    /// False while the fingers move or do not press the object, before the closing command has checked the grasp, and
-    /// if the fingers only opened since they were empty.
+    /// False while the fingers move or do not press the object, and before the closing command has checked the grasp.
+    /// Also false if the fingers were empty and have only opened since then.
     fn may_adopt(
         &self,
         command: &EmoveCommand,

@@ -183,8 +183,8 @@ impl EmoveVision {
         self.located.map(|Located { object, site, .. }| LocatedObject { object, site })
     }
 
-    /// Discard the pictures after the robot controller was off, because the arm has sunk, perhaps onto the object, and
-    /// after manual motion near the object, because the fingers may have pushed it.
+    /// Discard the pictures after the robot controller was off, because the arm has sunk, perhaps onto the object. Also
+    /// discard them after manual motion near the object, because the fingers may have pushed it.
     pub(super) fn sense(&mut self, memory: &CommonMemory) {
         let may_touch = |located: &Located| may_push(&located.pose, memory);
         let is_pushed = is_moved_by_hand(memory) && self.located.as_ref().is_some_and(may_touch);

@@ -1,8 +1,8 @@
 //! Part presence between the fingers of Grip, by strain gages and potentiometer alone.
 //!
-//! A part is between the fingers if both strain gages read a force and the fingers are above the closed end of
-//! travel, where fingers that press on each other read a force, too. The fingers are empty if neither reads a
-//! force. Contact of one finger alone is not enough: a part held with little force may touch only one of them. A
+//! A part is between the fingers if both strain gages read a force and the fingers are above the closed end of travel.
+//! At the closed end the fingers press on each other and also read a force. The fingers are empty if neither gage reads
+//! a force. Contact of one finger alone is not enough: a part held with little force may touch only one of them. A
 //! value is valid after `FELT_TICKS`.
 
 use interfaces::{
