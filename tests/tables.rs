@@ -200,7 +200,8 @@ fn conditions(row: &Row) -> String {
     row.conditions.iter().map(condition).collect::<Vec<_>>().join(", ")
 }
 
-/// Appends the conditions from `at` on. Adjacent rows with equal variables so far have their next variable in a column.
+/// Appends the conditions from `at` on. Adjacent rows that have tested the same variables so far have their
+/// next variable in a column.
 fn align_variables(rows: &[Row], at: usize, texts: &mut [String]) {
     let name = |row: &Row| row.conditions.get(at).map(|(name, _)| name.clone());
     let mut first = 0;

@@ -89,7 +89,7 @@ pub enum Variable {
     /// E-move: the object located by vision. Without it a new picture is taken.
     #[text = "emove.estimates.located"]
     Located,
-    /// Grip: scale and offset of the sensors. Without them the next motion to an opening calibrates first.
+    /// Grip: scale and offset of the sensors. If they are deleted, the next motion to an opening calibrates first.
     #[text = "grip.calibration"]
     Calibration,
 }
