@@ -124,7 +124,8 @@ impl fmt::Display for Pattern {
 pub struct Permit {
     pub mover: Vec<Pattern>,
     pub obstacle: Vec<Pattern>,
-    /// Commands of E-move or Subtask during which the contact is permitted. If the list is empty, it is always permitted.
+    /// Commands of E-move or Subtask during which the contact is permitted. If the list is empty, it is always
+    /// permitted.
     #[serde(default)]
     pub during: Vec<String>,
     /// Greatest depth, in; without it any depth.
