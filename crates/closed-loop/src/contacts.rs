@@ -450,7 +450,7 @@ mod tests {
         assert_eq!(pass(1, 0.5), (Some((0.5, 1)), 0.5));
         assert_eq!(pass(2, 0.3), (Some((0.3, 2)), 0.3));
         assert_eq!(pass(3, 0.4), (Some((0.3, 2)), 0.3));
-        assert_eq!(pass(4, 0.01), (Some((0.01, 4)), FREE), "that something comes free is still seen");
+        assert_eq!(pass(4, 0.01), (Some((0.01, 4)), FREE), "the end of a contact is still detected");
         assert_eq!(check.verdict(), None);
         play(&mut check, &[(-0.001, MOVE)]);
         assert_eq!(check.nearest().map(|nearest| nearest.tick), Some(4), "fingers touch parts now and then");

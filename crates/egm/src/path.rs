@@ -237,7 +237,7 @@ mod tests {
         assert_eq!(
             path.push(700 * MS, &at(110.0), &LIMITS),
             Err(Error::NotReady),
-            "nothing goes on by itself"
+            "nothing continues by itself"
         );
     }
 

@@ -220,7 +220,7 @@ mod tests {
         assert_eq!(begun.len(), 1);
         assert!((begun[0].depth - 0.002 / 0.0254).abs() < 1e-6, "{begun:?}");
         assert!((begun[0].away[2] - 1.0).abs() < 1e-6, "up it is free: {begun:?}");
-        assert!(check(0.147).is_empty(), "it goes on");
+        assert!(check(0.147).is_empty(), "it continues");
         assert!(check(0.2).is_empty());
         assert_eq!(check(0.14).len(), 1, "it begins again");
     }

@@ -208,6 +208,6 @@ fn values_relative_to_an_unreadable_value_are_not_judged() {
 fn box_around_the_robot_at_the_start_is_reported() {
     let text = TEXT.replacen("centre = [-23.26, -63.90, -36.0]", "centre = [0.0, -63.90, -16.0]", 1);
     let description = CellDescription::from_toml(&text).expect("its numbers are sound");
-    let error = Cell::new(&description, 1).err().expect("the robot stands in the table").to_string();
+    let error = Cell::new(&description, 1).err().expect("the robot overlaps the table").to_string();
     assert!(error.starts_with("robot.start: ") && error.contains(" runs into table, "), "{error}");
 }

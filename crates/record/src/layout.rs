@@ -370,7 +370,7 @@ mod tests {
         assert_eq!(
             places,
             [(0, 3), (3, 2), (5, 1), (6, 2), (8, 10), (18, 1), (19, 2), (21, 10), (19, 4)],
-            "what the variants carry stands in the same bytes"
+            "the values of the variants use the same bytes"
         );
     }
 

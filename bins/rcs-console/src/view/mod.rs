@@ -219,7 +219,7 @@ fn news(model: &Model, source: &dyn Source, about: &About<'_>, look: Look, width
             return line(Tone::Marked, &format!(" watch, or stop watching: {text}_   Enter  Esc"));
         }
         Some(Prompt::Reason(text)) => {
-            return line(Tone::Marked, &format!(" leave the step out, because: {text}_   Enter  Esc"));
+            return line(Tone::Marked, &format!(" skip the step, because: {text}_   Enter  Esc"));
         }
         Some(Prompt::Tick(text)) => return line(Tone::Marked, &format!(" go to tick: {text}_   Enter  Esc")),
         None => {}

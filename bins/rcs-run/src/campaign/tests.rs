@@ -126,7 +126,7 @@ fn under_way(facility: &Facility) -> Branch<'_> {
 
 fn judged(facility: &Facility, parent: &Parent, fork: &Branch<'_>, text: &str) -> BranchResult {
     let series = series(facility, text);
-    trial::run(facility, parent, fork, &series, PROCEDURE, None, &mut NoObserver).expect("the fork goes on")
+    trial::run(facility, parent, fork, &series, PROCEDURE, None, &mut NoObserver).expect("the fork continues")
 }
 
 #[test]
@@ -355,7 +355,7 @@ fn every_stop_in_every_state_ends_at_rest() {
         {
             let series = series(&facility, stop);
             let result = trial::run(&facility, &parent, &fork, &series, procedure, None, &mut NoObserver);
-            let result = result.expect("the fork goes on");
+            let result = result.expect("the fork continues");
             let rest = result.rest_after.expect("it is judged at rest");
             assert!(result.verdict == Verdict::Done && rest <= STOPS, "{stop} at {at}: {result:?}");
         }

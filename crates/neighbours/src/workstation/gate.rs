@@ -283,7 +283,7 @@ mod tests {
         assert_eq!(*bench.gate.command(), transfer(7));
         bench.send(b"hello");
         let status = bench.status(7, HwsReport::Executing);
-        assert_eq!((status.echo, status.report), (7, HwsReport::Executing), "it goes on");
+        assert_eq!((status.echo, status.report), (7, HwsReport::Executing), "it continues");
         assert_eq!((status.verdict, status.mailgram_echo), (1, 7));
         assert_eq!(status.reason, "a command of 126 bytes was expected, found 5");
         assert_eq!(bench.command(&transfer(8)), None);

@@ -48,7 +48,7 @@ impl Model {
         let (Some(step), begun) = (track.step(), track.begun) else { return };
         let sight = Sight { picture, cell: &cell, operating: self.operating.as_ref(), begun };
         if !step.needs_a_word(&sight) {
-            self.answer = Some("the console checks this itself; s leaves the step out".to_owned());
+            self.answer = Some("the console checks this itself; s skips the step".to_owned());
             return;
         }
         let note = note(track, "done");
