@@ -280,14 +280,7 @@ impl Station {
 impl Coupler {
     fn open(device: &Device) -> Result<Self, String> {
         let Device { name, address, plan, .. } = device;
-        let emulated = Emulated::of(plan);
-        let emulated = emulated.ok_or_else(|| {
-            format!(
-                "{name}: only devices of the kind bk9000 with registers can be simulated, found {}",
-                plan.kind.text()
-            )
-        })?;
-        let server = Server::open(*address, emulated).map_err(|error| {
+        let server = Server::open(*address, Emulated::of(plan)).map_err(|error| {
             let hint = match error.kind() {
                 io::ErrorKind::AddrNotAvailable => {
                     format!(": `ip address add {}/32 dev lo` makes it one of this machine", address.ip())
@@ -319,7 +312,7 @@ impl Coupler {
         }
         let fallbacks = self.server.with(|emulated| emulated.fallbacks());
         if fallbacks != self.fallbacks {
-            stdout_line!("[station] {name}: its watchdog has fired, its outputs are 0");
+            stdout_line!("[station] {name}: its watchdog has fired, its outputs are those of its fallback");
         }
         (self.clients, self.fallbacks) = (clients, fallbacks);
     }

@@ -34,6 +34,11 @@ struct Station {
 
 impl Station {
     fn start() -> Self {
+        Self::of(|text| text)
+    }
+
+    /// A station with a change of its mapping.
+    fn of(change: impl FnOnce(String) -> String) -> Self {
         let directory = tempfile::tempdir().unwrap();
         let path: PathBuf = directory.path().join("free.toml");
         let mut text = fs::read_to_string(format!("{DATA}/field/station.toml")).unwrap();
@@ -42,7 +47,7 @@ impl Station {
         for (shipped, free) in [21502, 21503, 21504].into_iter().zip(free) {
             text = text.replace(&format!("127.0.0.1:{shipped}"), &free.to_string());
         }
-        fs::write(&path, text).unwrap();
+        fs::write(&path, change(text)).unwrap();
         let mut child = Command::new(env!("CARGO_BIN_EXE_rcs-cell"))
             .args(["--data", DATA, "--station"])
             .arg(&path)
@@ -161,6 +166,22 @@ fn vise_and_tray_answer_to_outputs_and_a_person() {
     station.wait_for("[status] LINKBAR1_BH in UNIT_1 4");
     station.enter("quit");
     assert!(station.child.wait().unwrap().success());
+}
+
+/// A WAGO: outputs at 0x200, a watchdog that a register starts, and exception 4 to everything once it has fired.
+#[test]
+fn coupler_of_another_kind_answers_as_its_manual_says() {
+    let station =
+        Station::of(|text| text.replace("\"bk9000\"", "\"wago\"").replace("holding 0x8", "holding 0x2"));
+    let mut client = Client::connect(station.fixture);
+    assert_eq!(client.write(0x1000, 5), [16, 0x10, 0, 0, 1]);
+    assert_eq!(client.write(0x1001, 0x8000), [16, 0x10, 1, 0, 1], "only function 16 restarts it");
+    assert_eq!(client.write(0x1003, 1), [16, 0x10, 3, 0, 1]);
+    assert_eq!(client.write(0x200, VISE_PARTIAL), [16, 2, 0, 0, 1]);
+    station.wait_for("[station] fixture: its watchdog has fired");
+    assert_eq!(client.ask(&[3, 2, 0, 0, 1]).unwrap(), [0x83, 4]);
+    assert_eq!(client.ask(&[6, 0x10, 8, 0xAA, 0x55]).unwrap(), [6, 0x10, 8, 0xAA, 0x55]);
+    assert_eq!(client.ask(&[3, 2, 0, 0, 1]).unwrap(), [3, 2, 0, 0]);
 }
 
 #[test]

@@ -42,8 +42,6 @@ const ENDING_STEPS: usize = 12;
 pub enum FieldError {
     #[error("{device}: {source}")]
     Plan { device: String, source: PlanError },
-    #[error("{device}: only devices of the kind bk9000 with registers can be simulated")]
-    NotEmulated { device: String },
     #[error(transparent)]
     Devices(#[from] DeviceError),
     #[error("{device} is not ready after its set-up")]
@@ -208,10 +206,8 @@ impl SimulatedField {
 
 fn simulated(planned: &field::Device) -> Result<Simulated, FieldError> {
     let plan = &planned.plan;
-    let name = || planned.name.clone();
-    let coupler = Emulated::of(plan).ok_or_else(|| FieldError::NotEmulated { device: name() })?;
-    Simulated::new(plan.clone(), coupler, TIMEOUT_MS)
-        .map_err(|source| FieldError::Plan { device: name(), source })
+    Simulated::new(plan.clone(), Emulated::of(plan), TIMEOUT_MS)
+        .map_err(|source| FieldError::Plan { device: planned.name.clone(), source })
 }
 
 #[cfg(test)]

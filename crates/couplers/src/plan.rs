@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use rcs_core::Plain;
 
-use crate::kind::{Fallback, Kind};
+use crate::kind::{Facts, Fallback, Kind};
 
 /// Greatest number of words of an input image: one request reads them (function 23).
 pub const MOST_IN: usize = 125;
@@ -99,7 +99,7 @@ pub struct Plan {
     pub kind: Kind,
     /// Behaviour of the outputs when the watchdog fires.
     pub fallback: Fallback,
-    /// Time of the watchdog, ms; not used without one.
+    /// Time of the watchdog, ms; not used without one. A [`Kind::Values`] has it set by hand.
     pub watchdog_ms: u16,
     /// Age at which inputs are stale, ms: the minimum over all points.
     pub stale_ms: u16,
@@ -126,11 +126,11 @@ pub enum PlanError {
     /// A span is empty, or ends beyond 65535.
     #[error("{count} addresses from {first:#06x}: between 1 and the last address 0xffff were expected")]
     BadSpan { first: u16, count: u16 },
-    /// Registers are not process data of the kind.
-    #[error("registers {first:#06x} to {last:#06x} are not {direction} of a {kind}")]
+    /// Addresses are not process data of the kind.
+    #[error("addresses {first:#06x} to {last:#06x} are not {direction} of a {kind}")]
     NotProcessData {
         kind: Kind,
-        /// `inputs` or `outputs`.
+        /// `inputs`, `outputs` or `coils`.
         direction: &'static str,
         first: u16,
         last: u16,
@@ -149,6 +149,25 @@ pub enum PlanError {
         /// Time found, ms.
         found: u16,
     },
+    /// The device cannot be set to this time.
+    #[error("a watchdog of {found} ms, expected a multiple of {step} ms")]
+    UnevenWatchdog {
+        /// Step of the times, ms.
+        step: u16,
+        /// Time found, ms.
+        found: u16,
+    },
+    /// The kind refuses a request of this length.
+    #[error(
+        "{found} {what} in one request, and a {kind} accepts at most {most}: use addresses closer together"
+    )]
+    LongRequest {
+        kind: Kind,
+        /// `output registers` or `coils`.
+        what: &'static str,
+        most: u16,
+        found: u16,
+    },
     /// The safe image differs from the outputs after the fallback.
     #[error("safe values differ from the outputs after the fallback {fallback}")]
     UnsafeFallback {
@@ -162,17 +181,29 @@ pub enum PlanError {
 
 fn check_process_data(
     kind: Kind,
-    spans: &[Span],
+    span: &Span,
     direction: &'static str,
     addresses: &RangeInclusive<u16>,
 ) -> Result<(), PlanError> {
-    for span in spans.iter().filter(|span| !span.area.has_bits()) {
-        let (first, last) = (span.first, span.first.saturating_add(span.count - 1));
-        if !addresses.contains(&first) || !addresses.contains(&last) {
-            return Err(PlanError::NotProcessData { kind, direction, first, last });
-        }
+    let (first, last) = (span.first, span.first.saturating_add(span.count - 1));
+    if addresses.contains(&first) && addresses.contains(&last) {
+        Ok(())
+    } else {
+        Err(PlanError::NotProcessData { kind, direction, first, last })
     }
-    Ok(())
+}
+
+/// Number of bits from the beginning of the process data to the end of the last span in them.
+fn needed(spans: &[Span], first_register: u16, first_coil: u16) -> u32 {
+    let end = |span: &Span| {
+        let (start, bits) = match span.area {
+            Area::Coil => (first_coil, 1),
+            Area::Discrete => (0, 1),
+            Area::Input | Area::Holding => (first_register, 16),
+        };
+        (u32::from(span.first.saturating_sub(start)) + u32::from(span.count)) * bits
+    };
+    spans.iter().map(end).max().unwrap_or(0)
 }
 
 impl Plan {
@@ -199,20 +230,41 @@ impl Plan {
             return Err(PlanError::NotWritable { found: span.area });
         }
         let facts = self.kind.facts();
-        check_process_data(self.kind, &self.reads, "inputs", &facts.inputs)?;
-        check_process_data(self.kind, &self.writes, "outputs", &facts.outputs)?;
-        self.check_fallback()
+        for span in self.reads.iter().filter(|span| !span.area.has_bits()) {
+            check_process_data(self.kind, span, "inputs", &facts.inputs)?;
+        }
+        for span in &self.writes {
+            self.check_written(span, facts)?;
+        }
+        self.check_fallback(facts)
     }
 
-    fn check_fallback(&self) -> Result<(), PlanError> {
-        let (kind, fallback, facts) = (self.kind, self.fallback, self.kind.facts());
+    fn check_written(&self, span: &Span, facts: &Facts) -> Result<(), PlanError> {
+        let (addresses, most, direction, what) = if span.area.has_bits() {
+            (&facts.coils, facts.most_written.1, "coils", "coils")
+        } else {
+            (&facts.outputs, facts.most_written.0, "outputs", "output registers")
+        };
+        check_process_data(self.kind, span, direction, addresses)?;
+        if span.count > most {
+            return Err(PlanError::LongRequest { kind: self.kind, what, most, found: span.count });
+        }
+        Ok(())
+    }
+
+    fn check_fallback(&self, facts: &Facts) -> Result<(), PlanError> {
+        let (kind, fallback) = (self.kind, self.fallback);
         if !facts.fallbacks.contains(&fallback) {
             return Err(PlanError::NoFallback { kind, fallback });
         }
-        if let Some(times) = facts.watchdog_ms {
-            let least = *times.start().max(&self.stale_ms.saturating_add(1));
-            if !(least..=*times.end()).contains(&self.watchdog_ms) {
-                return Err(PlanError::BadWatchdog { least, found: self.watchdog_ms });
+        if let Some(watchdog) = &facts.watchdog {
+            let (found, step) = (self.watchdog_ms, watchdog.step_ms);
+            let least = *watchdog.times_ms.start().max(&self.stale_ms.saturating_add(1));
+            if !(least..=*watchdog.times_ms.end()).contains(&found) {
+                return Err(PlanError::BadWatchdog { least, found });
+            }
+            if found % step != 0 {
+                return Err(PlanError::UnevenWatchdog { step, found });
             }
         }
         if fallback == Fallback::Zero && !self.safe.is_zero() {
@@ -223,6 +275,17 @@ impl Plan {
             return Err(PlanError::NotAtRest);
         }
         Ok(())
+    }
+
+    /// Bits from the beginning of the kind's inputs to the last one that is read.
+    pub(crate) fn input_bits(&self) -> u32 {
+        needed(&self.reads, *self.kind.facts().inputs.start(), 0)
+    }
+
+    /// Bits from the beginning of the kind's outputs to the last one that is written.
+    pub(crate) fn output_bits(&self) -> u32 {
+        let facts = self.kind.facts();
+        needed(&self.writes, *facts.outputs.start(), *facts.coils.start())
     }
 
     /// All bits of the output image.

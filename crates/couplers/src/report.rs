@@ -84,9 +84,9 @@ pub enum Trip {
     Gap(u32),
     /// Its outputs are not those that were written last.
     Outputs,
-    /// Its settings differ from those that the session made.
+    /// Its settings, or the state of its watchdog, are not those that the session left.
     Settings,
-    /// It refused a write with this exception code.
+    /// It refused a request that it had accepted before, with this exception code.
     Refused(u8),
     /// Its terminals report an error, with this status word.
     Terminals(u16),

@@ -16,7 +16,7 @@
 mod setup;
 mod transfer;
 
-use modbus::MOST_FRAME_BYTES;
+use modbus::{Exception, MOST_FRAME_BYTES};
 use rcs_core::Plain;
 
 use crate::{
@@ -34,8 +34,13 @@ const MOST_SILENCE: u64 = 116 * MS;
 const PAUSES: (u64, u64) = (20 * MS, 320 * MS);
 /// Period in which outputs, settings and status of the device are read back.
 const CHECKED_EVERY: u64 = 1000 * MS;
-const MOST_ENDING: u64 = 150 * MS; // time within which the final outputs must be confirmed
-const MOST_STILL: u64 = 2000 * MS; // time in which the counter of a device's program must change
+const MOST_ENDING: u64 = 150 * MS; // time within which the outputs of the end must be confirmed
+/// Period in which the counter of a device's program is read, and time in which it must change. A device that stops is
+/// found within the sum and one exchange.
+const COUNTED_EVERY: u64 = 500 * MS;
+const MOST_STILL: u64 = 1000 * MS;
+/// Time after which a coupler must have released its write lock, in addition to half the time of its watchdog.
+const LOCK_MARGIN: u64 = 100 * MS;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
@@ -52,6 +57,7 @@ enum Phase {
 struct Alive {
     value: u16,
     since: u64,
+    next: u64, // when it is read again
 }
 
 #[derive(Clone, Debug)]
@@ -66,8 +72,12 @@ pub struct Session {
     /// Number of the newest orders, and when they were first seen. `None` until the run writes outputs.
     orders: Option<(u64, u64)>,
     go: u32,
-    checked_at: u64,
+    next_check: u64,
+    checks: usize, // checks of the device so far
     alive: Option<Alive>,
+    is_started: bool,    // the watchdog was started, if its kind needs it
+    fallbacks: u16,      // how often the watchdog had fired at the set-up, if the device counts it
+    locked_until: u64,   // the device may refuse writes until then, because of an earlier connection
     ending: Option<u64>, // when the end was first asked for
 }
 
@@ -98,8 +108,12 @@ impl Session {
             pause: PAUSES.0,
             orders: None,
             go: 0,
-            checked_at: 0,
+            next_check: 0,
+            checks: 0,
             alive: None,
+            is_started: false,
+            fallbacks: 0,
+            locked_until: 0,
             ending: None,
         })
     }
@@ -171,6 +185,10 @@ impl Session {
             }
             link.connect()?;
             self.heard_at = link.now();
+            if self.plan.kind.facts().has_write_lock {
+                let half = u64::from(self.plan.watchdog_ms) * MS / 2;
+                self.locked_until = self.heard_at.saturating_add(half + LOCK_MARGIN);
+            }
             self.report.counters.connections = self.report.counters.connections.wrapping_add(1);
             let is_known = matches!(self.report.state, State::Running | State::Stale);
             self.phase = if is_known { Phase::Back } else { Phase::Setup };
@@ -198,10 +216,24 @@ impl Session {
         match (orders.mode, self.report.state) {
             (Mode::End, _) => return self.finish(link).map_err(Stop::Fault),
             (Mode::Watch, State::Running) => self.transfer(link, None)?,
-            (Mode::Run, State::Running) => self.transfer(link, Some(&orders.words)).map_err(refused_write)?,
-            _ => self.write_safe(link).map_err(refused_write)?,
+            (Mode::Run, State::Running) => self.write_unless_locked(link, &orders.words)?,
+            _ => {
+                let safe = self.plan.safe;
+                self.write_unless_locked(link, &safe)?;
+            }
         }
         self.check_device(link)
+    }
+
+    /// Exchanges process data. While an earlier connection has the write lock, only reads the inputs.
+    fn write_unless_locked(&mut self, link: &mut impl Link, words: &OutWords) -> Result<(), Stop> {
+        match self.transfer(link, Some(words)) {
+            Err(fault @ Fault::Exception(_)) if link.now() < self.locked_until => {
+                self.note(fault);
+                self.transfer(link, None).map_err(Stop::Fault)
+            }
+            done => done.map_err(refused),
+        }
     }
 
     fn release(&mut self, orders: &Orders) {
@@ -229,13 +261,17 @@ impl Session {
             Stop::Refused(refusal) => self.report.refusal = Some(refusal),
             Stop::Trip(cause) => self.trip(cause),
             Stop::Fault(fault) => {
-                self.report.fault = Some(fault);
-                self.report.counters.failures = self.report.counters.failures.wrapping_add(1);
+                self.note(fault);
                 if fault.ends_connection() {
                     self.close(link);
                 }
             }
         }
+    }
+
+    const fn note(&mut self, fault: Fault) {
+        self.report.fault = Some(fault);
+        self.report.counters.failures = self.report.counters.failures.wrapping_add(1);
     }
 
     /// Resets a connection without an answer, and marks the inputs as stale.
@@ -297,41 +333,55 @@ impl Session {
         self.report.state = State::Ended(confirmed);
     }
 
-    /// Compares outputs, settings, status and the counter of the program with the expected values, once per second.
+    /// Compares outputs, status and settings with the expected values, one per exchange and each once per second.
     fn check_device(&mut self, link: &mut impl Link) -> Result<(), Stop> {
+        self.check_alive(link)?;
         let now = link.now();
-        if now.saturating_sub(self.checked_at) < CHECKED_EVERY {
+        if now < self.next_check {
             return Ok(());
         }
-        if self.read_outputs(link)? != self.report.acknowledged && self.written_at.is_some() {
-            return Err(Stop::Trip(Trip::Outputs));
-        }
-        if !self.is_set_up(link)? {
-            return Err(Stop::Trip(Trip::Settings));
-        }
-        if let Some(status) = self.read_status(link)?.filter(|status| *status != 0) {
-            return Err(Stop::Trip(Trip::Terminals(status)));
-        }
-        if let Some(span) = self.plan.alive {
-            let value = self.read_register(link, span)?;
-            match &mut self.alive {
-                Some(alive) if alive.value == value => {
-                    if now.saturating_sub(alive.since) >= MOST_STILL {
-                        return Err(Stop::Trip(Trip::Frozen));
-                    }
+        let count = 2 + self.kept_registers();
+        match self.checks % count {
+            0 => {
+                let outputs = self.read_outputs(link).map_err(refused)?;
+                if outputs != self.report.acknowledged && self.written_at.is_some() {
+                    return Err(Stop::Trip(Trip::Outputs));
                 }
-                alive => *alive = Some(Alive { value, since: now }),
             }
+            1 => self.check_status(link)?,
+            index => self.check_kept(link, index - 2)?,
         }
-        self.checked_at = now;
+        self.checks = (self.checks + 1) % count;
+        // Counted from the time at which it was due, so that delays do not add up.
+        self.next_check = (self.next_check + CHECKED_EVERY / u64::try_from(count).unwrap_or(1)).max(now);
         Ok(())
+    }
+
+    fn check_status(&mut self, link: &mut impl Link) -> Result<(), Stop> {
+        let Some(status) = &self.plan.kind.facts().status else { return Ok(()) };
+        let [found] = self.read_registers(link, status.register)?;
+        if found & status.mask == status.good { Ok(()) } else { Err(Stop::Trip(Trip::Terminals(found))) }
+    }
+
+    /// Trips if the counter of the device's program stands still.
+    fn check_alive(&mut self, link: &mut impl Link) -> Result<(), Stop> {
+        let now = link.now();
+        let Some(span) = self.plan.alive.filter(|_| self.alive.is_none_or(|alive| now >= alive.next)) else {
+            return Ok(());
+        };
+        let value = self.read_register(link, span)?;
+        let since = self.alive.filter(|alive| alive.value == value).map_or(now, |alive| alive.since);
+        self.alive = Some(Alive { value, since, next: now + COUNTED_EVERY });
+        if now.saturating_sub(since) >= MOST_STILL { Err(Stop::Trip(Trip::Frozen)) } else { Ok(()) }
     }
 }
 
-/// A device that refuses a write trips.
-fn refused_write(fault: Fault) -> Stop {
+/// A device that refuses what it accepted before trips. One that is busy only misses an exchange.
+fn refused(fault: Fault) -> Stop {
     match fault {
-        Fault::Exception(code) => Stop::Trip(Trip::Refused(code)),
+        Fault::Exception(code) if code != Exception::ServerDeviceBusy.code() => {
+            Stop::Trip(Trip::Refused(code))
+        }
         fault => Stop::Fault(fault),
     }
 }

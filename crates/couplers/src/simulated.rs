@@ -28,8 +28,10 @@ impl Simulated {
             coupler,
             timeout: u64::from(timeout_ms) * MS,
             now: 0,
+            connections: 0,
             is_cut: false,
             is_broken: false,
+            is_full: false,
             is_hanging: false,
             waiting: None,
         };
@@ -48,6 +50,11 @@ impl Simulated {
         self.line.is_cut = is_cut;
     }
 
+    /// Other clients take all connections of the coupler, or leave it. A connection that exists is kept.
+    pub const fn fill(&mut self, is_full: bool) {
+        self.line.is_full = is_full;
+    }
+
     /// Stops the program of the coupler, or lets it continue. It then carries out the request that it had received,
     /// even if the connection was reset in the meantime.
     pub const fn hang(&mut self, is_hanging: bool) {
@@ -56,7 +63,7 @@ impl Simulated {
     }
 
     /// Switches the coupler off and on: see [`Emulated::restart`]. The connection ends.
-    pub const fn restart(&mut self) {
+    pub fn restart(&mut self) {
         self.line.coupler.restart();
         self.line.is_broken = true;
     }
@@ -89,9 +96,12 @@ struct SimulatedLine {
     coupler: Emulated,
     timeout: u64,
     now: u64,
+    connections: u64,
     is_cut: bool,
     /// The coupler has forgotten the connection.
     is_broken: bool,
+    /// Other clients have all connections of the coupler.
+    is_full: bool,
     /// Requests reach the coupler, but its program is stopped.
     is_hanging: bool,
     /// A request sent over the cut line, which the coupler receives when the connection is restored.
@@ -114,12 +124,16 @@ impl Link for SimulatedLine {
             self.now += self.timeout;
             return Err(Fault::NoConnection);
         }
+        if self.is_full {
+            return Err(Fault::NoConnection);
+        }
         self.is_broken = false;
         if let Some(Waiting { frame, length }) = self.waiting.take() {
             let mut answer = [0; MOST_FRAME_BYTES];
             // The answer goes to a connection that was reset.
-            let _ = self.coupler.answer(self.now, &frame[..length], &mut answer);
+            let _ = self.coupler.answer(self.now, self.connections, &frame[..length], &mut answer);
         }
+        self.connections += 1;
         Ok(())
     }
 
@@ -133,7 +147,9 @@ impl Link for SimulatedLine {
         }
         if let Some(Waiting { frame, length }) = self.waiting.take_if(|_| !self.is_cut) {
             // The coupler carries the request out late, and its answer is dropped.
-            self.coupler.answer(self.now, &frame[..length], buffer).map_err(|_| Fault::Disconnected)?;
+            self.coupler
+                .answer(self.now, self.connections, &frame[..length], buffer)
+                .map_err(|_| Fault::Disconnected)?;
         }
         if self.waiting.is_some() {
             self.now += self.timeout;
@@ -146,8 +162,10 @@ impl Link for SimulatedLine {
             self.now += self.timeout;
             return Err(Fault::NoAnswer);
         }
-        let answered =
-            self.coupler.answer(self.now, &frame[..length], buffer).map_err(|_| Fault::Disconnected)?;
+        let answered = self
+            .coupler
+            .answer(self.now, self.connections, &frame[..length], buffer)
+            .map_err(|_| Fault::Disconnected)?;
         Ok(self.client.answer(request, &buffer[..answered])?)
     }
 

@@ -4,14 +4,17 @@
 use std::{
     env,
     io::{BufRead, BufReader},
-    net::{Ipv4Addr, SocketAddr},
+    net::{Ipv4Addr, SocketAddr, TcpStream},
     process::{Child, Command, Stdio},
     thread::sleep,
     time::{Duration, Instant},
 };
 
-use couplers::{Area, Emulated, Fallback, Kind, Mode, Orders, OutWords, Plan, Report, Span, State, Trip};
-use executive::field::{Device, Station};
+use couplers::{
+    Area, Emulated, Fallback, Fault, Kind, Mode, Orders, OutWords, Plan, Report, Span, State, Trip,
+    emulated::CouplerFault,
+};
+use executive::field::{Device, Station, station::MOST_CONNECTIONS};
 use os_io::alloc::{Counting, allocations, is_installed};
 use rcs_core::Plain;
 use rustix::process::{Pid, Signal, kill_process};
@@ -26,6 +29,16 @@ const CLAMP: u16 = 0x02;
 const CLOCK: usize = 1; // word of the output image that holds the number of the tick
 /// The address of the station, for the controller in another process.
 const STATION: &str = "RCS_TEST_STATION";
+
+/// A plan with other registers and another fallback, if the kind needs them.
+fn plan_of(kind: Kind) -> Plan {
+    let mut plan = Plan { kind, fallback: kind.facts().fallbacks[0], ..plan(20_000, 10_000) };
+    plan.writes[0].first = *kind.facts().outputs.start();
+    if plan.fallback == Fallback::Hold {
+        plan.rest = plan.written();
+    }
+    plan
+}
 
 fn plan(watchdog_ms: u16, stale_ms: u16) -> Plan {
     let mut rest = OutWords::ZERO;
@@ -119,6 +132,63 @@ fn exchange_with_a_device_does_not_allocate() {
     assert!(controller.device.end(), "confirmed");
     assert_eq!(output(&station), CLAMP, "what may be on at rest is kept");
     assert_eq!(allocations() - before, 0);
+}
+
+#[test]
+fn every_kind_is_set_up_written_and_read() {
+    for &kind in Kind::ALL {
+        let plan = plan_of(kind);
+        let station = Station::open(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)), Emulated::of(&plan));
+        let station = station.expect("a free port");
+        station.with(|coupler| coupler.inputs_mut()[3] = 77);
+        let mut controller = Controller::of(station.address(), plan);
+        controller.until_running(&station);
+        let report = controller.until(kind.text(), |report| report.inputs.words[3] == 77);
+        assert_eq!((report.counters.trips, report.refusal), (0, None), "{kind}");
+        assert!(controller.device.end(), "{kind}");
+    }
+}
+
+/// A coupler whose program has stopped answers well: only the counter of the program shows it.
+#[test]
+fn frozen_coupler_with_good_answers_trips() {
+    let counted =
+        Plan { alive: Some(Span { area: Area::Input, first: 40, count: 1 }), ..plan(20_000, 10_000) };
+    let station = Station::open(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)), Emulated::of(&counted));
+    let station = station.expect("a free port");
+    let mut controller = Controller::of(station.address(), counted);
+    controller.until_running(&station);
+    for _ in 0..75 {
+        assert_eq!(controller.tick().state, State::Running, "the counter changes");
+    }
+    station.with(|coupler| coupler.set_fault(CouplerFault::Freeze));
+    let report = controller.until("a trip", |report| matches!(report.state, State::Tripped(_)));
+    assert_eq!(report.state, State::Tripped(Trip::Frozen));
+    assert!(!report.is_valid(report.read_at.expect("answered"), 10_000), "its inputs are not used");
+    controller.until("the safe image", |_| output(&station) == 0);
+}
+
+#[test]
+fn terminals_with_an_error_trip() {
+    let station = station();
+    let mut controller = Controller::of(station.address(), plan(20_000, 10_000));
+    controller.until_running(&station);
+    station.with(|coupler| coupler.set_fault(CouplerFault::Terminals(4)));
+    let report = controller.until("a trip", |report| matches!(report.state, State::Tripped(_)));
+    assert_eq!(report.state, State::Tripped(Trip::Terminals(4)));
+}
+
+#[test]
+fn device_whose_connections_are_taken_waits_for_one() {
+    let station = station();
+    let others: Vec<TcpStream> =
+        (0..MOST_CONNECTIONS).map(|_| TcpStream::connect(station.address()).expect("a connection")).collect();
+    wait_until("all connections", || station.clients().connections == MOST_CONNECTIONS);
+    let mut controller = Controller::of(station.address(), plan(20_000, 10_000));
+    let report = controller.until("a refusal", |report| report.counters.failures > 2);
+    assert_eq!((report.state, report.fault), (State::Starting, Some(Fault::Disconnected)));
+    drop(others);
+    controller.until_running(&station);
 }
 
 /// The answer that was delayed is dropped, and the connection is kept.

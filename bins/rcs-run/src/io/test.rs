@@ -12,11 +12,11 @@ use std::{
     time::{Duration, Instant},
 };
 
-use couplers::{Kind, Link as _, Mode, kind::bk9000};
+use couplers::{Fault, Kind, Link as _, Mode};
 use executive::field::TcpLink;
 use field::{Seen, Target};
 use interfaces::{DeviceInputs, point};
-use modbus::{MOST_FRAME_BYTES, Request, Response, request::Range};
+use modbus::{MOST_FRAME_BYTES, Request, Words, request::Range};
 use os_io::stderr_line;
 
 use super::{
@@ -31,7 +31,6 @@ use crate::rcs_run::{
 };
 
 const MOST_FAILED_OF: u64 = 100; // a device of which more than one exchange in so many fails is not usable
-const IDENTITY: usize = 7; // registers of the identity of a BK9000
 
 /// Exit status 0 if all verdicts are good, 1 if not, 3 after an interruption.
 pub fn test(arguments: &IoTestArguments) -> Result<ExitCode, Error> {
@@ -56,8 +55,10 @@ pub fn test(arguments: &IoTestArguments) -> Result<ExitCode, Error> {
     }
     if arguments.watchdog {
         for index in ready {
-            if bench.mapping.devices[index].plan.kind == Kind::Bk9000 && !stop.load(Ordering::Relaxed) {
-                tally.devices[index].fallback_ms = fallback(&bench, index);
+            let watchdog = bench.mapping.devices[index].plan.kind.facts().watchdog.as_ref();
+            let shown = watchdog.and_then(|watchdog| Some((watchdog.fired?, watchdog.refuses_all)));
+            if let Some(shown) = shown.filter(|_| !stop.load(Ordering::Relaxed)) {
+                tally.devices[index].fallback_ms = fallback(&bench, index, shown);
                 if tally.devices[index].fallback_ms.is_none() {
                     tally.devices[index].verdict = Verdict::NoEffect;
                 }
@@ -199,26 +200,26 @@ fn judged(mut input: InputTally) -> InputTally {
 
 /// The text of a coupler about itself; empty without one.
 fn identity(kind: Kind, link: &mut TcpLink) -> String {
-    if kind != Kind::Bk9000 {
-        return String::new();
-    }
-    let words = registers::<IDENTITY>(link, bk9000::IDENTITY).unwrap_or_default();
+    let Some((first, count)) = kind.facts().identity else { return String::new() };
+    let words = registers(link, first, count).unwrap_or_default();
     let bytes = words.into_iter().flat_map(u16::to_be_bytes).filter(u8::is_ascii_graphic);
     bytes.map(char::from).collect()
 }
 
-fn registers<const N: usize>(link: &mut TcpLink, first: u16) -> Option<[u16; N]> {
+fn registers(link: &mut TcpLink, first: u16, count: u16) -> Result<Vec<u16>, Fault> {
     let mut answer = [0; MOST_FRAME_BYTES];
-    let range = Range { first, count: u16::try_from(N).ok()? };
-    let response = link.exchange(&Request::ReadHoldingRegisters(range), &mut answer).ok()?;
-    let Response::Words(words) = response else { return None };
-    let mut found = [0; N];
-    words.copy_to(&mut found);
-    Some(found)
+    let request = Request::ReadHoldingRegisters(Range { first, count });
+    let words = link.exchange(&request, &mut answer)?.words();
+    Ok(words.into_iter().flat_map(Words::iter).collect())
 }
 
-/// The time from the last write of a device to its fallback, over a second connection, ms.
-fn fallback(bench: &Bench, index: usize) -> Option<u64> {
+/// The time from the last write of a device to its fallback, over a second connection, ms. A register with a value
+/// shows the fallback, or that the coupler refuses every request (`refuses_all`).
+fn fallback(
+    bench: &Bench,
+    index: usize,
+    ((register, value), refuses_all): ((u16, u16), bool),
+) -> Option<u64> {
     let device = &bench.mapping.devices[index];
     let mut probe = bench.probe(index, Mode::Watch).ok()?;
     probe.orders.words = probe.report().acknowledged;
@@ -230,11 +231,18 @@ fn fallback(bench: &Bench, index: usize) -> Option<u64> {
     second.connect().ok()?;
     let limit = Duration::from_millis(device.plan.watchdog_ms.into()) + Duration::from_secs(1);
     let fired = loop {
-        match registers::<1>(&mut second, bk9000::WATCHDOG_LEFT) {
-            Some([0]) => break u64::try_from(written.elapsed().as_millis()).ok(),
-            _ if written.elapsed() > limit => break None,
-            _ => thread::sleep(Duration::from_millis(1)),
+        let is_fired = match registers(&mut second, register, 1) {
+            Ok(words) => words == [value],
+            Err(Fault::Exception(_)) => refuses_all,
+            Err(_) => false,
+        };
+        if is_fired {
+            break u64::try_from(written.elapsed().as_millis()).ok();
         }
+        if written.elapsed() > limit {
+            break None;
+        }
+        thread::sleep(Duration::from_millis(1));
     };
     probe.end();
     fired

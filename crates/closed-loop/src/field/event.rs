@@ -80,8 +80,8 @@ const fn cause(trip: Trip) -> &'static str {
     match trip {
         Trip::Gap(_) => "it was not written in time",
         Trip::Outputs => "its outputs are not those that were written",
-        Trip::Settings => "its settings are not those that were made",
-        Trip::Refused(_) => "it refused a write",
+        Trip::Settings => "its settings or its watchdog are not as they were left",
+        Trip::Refused(_) => "it refused a request that it had accepted before",
         Trip::Terminals(_) => "its terminals report an error",
         Trip::Frozen => "the counter of its program stands still",
         Trip::NoOrders => "the controller gave no orders",

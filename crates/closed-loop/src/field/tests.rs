@@ -6,8 +6,13 @@ use interfaces::device::{GroupHealth, KNOB_FULL, valve};
 use super::*;
 
 fn station() -> SimulatedField {
+    changed(|text| text)
+}
+
+/// The shipped station with a change of its mapping.
+fn changed(change: impl FnOnce(String) -> String) -> SimulatedField {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/field/station.toml");
-    let text = std::fs::read_to_string(path).unwrap();
+    let text = change(std::fs::read_to_string(path).unwrap());
     let mapping = Mapping::parse(&Source { name: path.to_owned(), text: text.into() }).unwrap();
     SimulatedField::new(Arc::new(mapping), &sensors(0)).unwrap()
 }
@@ -108,6 +113,43 @@ fn long_cut_makes_the_outputs_safe_until_a_release() {
     let (valves, inputs) = bench.steps(2, &at_rest, "");
     assert!(valves.tool_grip.close && inputs.field.any == GroupHealth::Fresh);
     assert_eq!(bench.codes(), ["io.stale", "io.tripped", "io.refused", "io.released"]);
+}
+
+/// With couplers of any kind, a cut of a fifth of a second recovers, and a longer one trips.
+#[test]
+fn every_kind_of_coupler_is_simulated() {
+    for (kind, fallback, watchdog) in [
+        ("ek9000", "zero", "watchdog_ms = 500"),
+        ("wago", "zero", "watchdog_ms = 500"),
+        ("turck", "zero", "watchdog_ms = 500"),
+        ("values", "values", "watchdog_ms = 1000"),
+        ("plain", "hold", ""),
+    ] {
+        let mut bench = Bench { tick: 0, field: changed(|text| of_kind(&text, kind, fallback, watchdog)) };
+        let (valves, inputs) = bench.steps(10, &closing(), "");
+        assert_eq!((valves.grip, inputs.grip.potentiometer), (closing().grip, 1010), "{kind}");
+        bench.steps(5, &closing(), "arm");
+        let (valves, inputs) = bench.steps(10, &closing(), "");
+        assert_eq!((valves.grip, inputs.field.any), (closing().grip, GroupHealth::Fresh), "{kind}");
+        assert_eq!(bench.codes(), ["io.stale", "io.back"], "{kind}");
+        bench.steps(50, &closing(), "arm");
+        let (valves, inputs) = bench.steps(25, &closing(), "");
+        assert_eq!((valves.grip.bits, inputs.field.grip), (0, GroupHealth::Tripped), "{kind}");
+    }
+}
+
+/// A mapping with couplers of another kind. Without a watchdog, all outputs must be permitted at rest.
+fn of_kind(text: &str, kind: &str, fallback: &str, watchdog: &str) -> String {
+    let mut text = text
+        .replace("\"bk9000\"", &format!("{kind:?}"))
+        .replace("\"zero\"", &format!("{fallback:?}"))
+        .replace("watchdog_ms = 500", watchdog);
+    match kind {
+        "wago" => text = text.replace("holding 0x8", "holding 0x2"),
+        "plain" => text = text.replace(", rest = true", "").replace("safe = 0", "safe = 0, rest = true"),
+        _ => {}
+    }
+    text
 }
 
 #[test]

@@ -49,6 +49,7 @@ impl Session {
         let mut inputs = InWords::ZERO;
         let (mut start, mut reads) = (0, 0);
         if let Some(words) = outputs {
+            self.start_watchdog(link)?;
             let written = self.write(link, words);
             if written != Err(Fault::Unanswered) {
                 // The device may have carried out the write, or may still do so.

@@ -48,7 +48,8 @@ struct Shared {
 
 #[derive(Debug, Default)]
 struct Traffic {
-    connections: AtomicUsize,
+    connections: AtomicUsize, // those that are open
+    accepted: AtomicU64,      // all so far
     refused: AtomicU64,
     garbled: AtomicU64, // connections that were closed because of bytes that are not a request
     requests: AtomicU64,
@@ -185,6 +186,7 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     // A client that reads no answers loses its connection.
     stream.set_write_timeout(Some(IDLE))?;
     let restarts = shared.restarts.load(Ordering::Relaxed);
+    let client = shared.traffic.accepted.fetch_add(1, Ordering::Relaxed);
     let (mut received, mut filled) = ([0; MOST_FRAME_BYTES], 0);
     let mut answer = [0; MOST_FRAME_BYTES];
     let mut heard = Monotonic.now();
@@ -205,7 +207,7 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
             if shared.restarts.load(Ordering::Relaxed) != restarts {
                 return Ok(());
             }
-            let length = coupler.answer(now(), frame, &mut answer).map_err(invalid)?;
+            let length = coupler.answer(now(), client, frame, &mut answer).map_err(invalid)?;
             shared.traffic.requests.fetch_add(1, Ordering::Relaxed);
             drop(coupler);
             stream.write_all(&answer[..length])?;

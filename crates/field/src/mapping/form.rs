@@ -33,6 +33,7 @@ pub(super) struct DeviceForm {
     pub kind: String,
     pub fallback: String,
     pub watchdog_ms: Option<u16>,
+    pub alive: Option<String>,
     #[serde(default = "exchange_ms")]
     pub exchange_ms: u16,
     #[serde(default = "timeout_ms")]

@@ -40,6 +40,15 @@ fn changed(from: &str, to: &str) -> Vec<String> {
     parse(&RIGHT.replacen(from, to, 1)).expect_err(to)
 }
 
+/// The file with another kind of coupler.
+fn of_kind(kind: &str, fallback: &str, watchdog: &str, outputs: &str) -> String {
+    RIGHT
+        .replace("bk9000", kind)
+        .replace("\"zero\"", &format!("{fallback:?}"))
+        .replace("watchdog_ms = 500", watchdog)
+        .replace("0x800", outputs)
+}
+
 fn with_input(line: &str) -> Vec<String> {
     changed("\n[out]\n", &format!("{line}\n\n[out]\n"))
 }
@@ -112,7 +121,7 @@ fn every_wrong_file_is_refused_with_its_line() {
         (device("\"127.0.0.1:1502\"", "\"127.0.0.1\""), 5, "expected a numeric address with a port"),
         (device("unit = 1\n", ""), 4, "device.arm has no key unit"),
         (device("unit = 1", "unit = 256"), 6, "expected a whole number from 0 to 255"),
-        (device("\"bk9000\"", "\"bk9001\""), 7, "expected one of bk9000, plain"),
+        (device("\"bk9000\"", "\"bk9001\""), 7, "expected one of bk9000, ek9000, wago, turck, values, plain"),
         (device("\"zero\"", "\"freeze\""), 8, "expected what a bk9000 can do, zero"),
         (device("\"zero\"", "\"hold\""), 8, "expected what a bk9000 can do, zero"),
         (device("watchdog_ms = 500\n", ""), 4, "expected the time of the watchdog, 1 to 65535 ms"),
@@ -121,6 +130,12 @@ fn every_wrong_file_is_refused_with_its_line() {
             4,
             "a watchdog of 100 ms, expected at least 101 ms",
         ),
+        (
+            device("watchdog_ms = 500", "watchdog_ms = 500\nalive = \"input\""),
+            10,
+            "expected a register that the program of the device increments",
+        ),
+        (device("watchdog_ms = 500", "watchdog_ms = 500\nalive = \"coil 7\""), 10, "expected a register"),
         (device("watchdog_ms = 500", "watchdog = 500"), 9, "device.arm has no key watchdog"),
         (
             device("watchdog_ms = 500", "watchdog_ms = 500\ntimeout_ms = 20"),
@@ -128,7 +143,7 @@ fn every_wrong_file_is_refused_with_its_line() {
             "expected 1 ms to less than exchange_ms",
         ),
         (device("watchdog_ms = 500", "watchdog_ms = 500\nexchange_ms = 5"), 10, "expected 10 to 1000 ms"),
-        (device("watchdog_ms = 500", "watchdog_ms = 0"), 9, "expected 1 to 65535 ms for a bk9000"),
+        (device("watchdog_ms = 500", "watchdog_ms = 0"), 9, "1 to 65535 ms for kind bk9000"),
         (
             changed(
                 "500\n",
@@ -278,6 +293,77 @@ fn every_wrong_file_is_refused_with_its_line() {
         assert!(fits, "line {line}, {expected:?} is not in {found:#?}");
     }
     assert!(cases.len() >= 40);
+}
+
+#[test]
+fn every_kind_is_mapped_at_its_own_addresses() {
+    for (kind, fallback, watchdog, outputs) in [
+        ("ek9000", "zero", "watchdog_ms = 500", "0x800"),
+        ("wago", "zero", "watchdog_ms = 500", "0x200"),
+        ("turck", "zero", "watchdog_ms = 500", "0x800"),
+        ("values", "values", "watchdog_ms = 1000", "40"),
+    ] {
+        let mapping = parse(&of_kind(kind, fallback, watchdog, outputs)).unwrap();
+        assert_eq!(mapping.devices[0].plan.kind.text(), kind);
+    }
+    let mapping = parse(&RIGHT.replace("= 500", "= 500\nalive = \"input 40\"")).unwrap();
+    let alive = Span { area: Area::Input, first: 40, count: 1 };
+    assert_eq!(mapping.devices[0].plan.alive, Some(alive));
+}
+
+#[test]
+fn what_a_kind_cannot_do_is_refused_with_its_line() {
+    let cases = [
+        (
+            of_kind("ek9000", "zero", "watchdog_ms = 400", "0x800"),
+            9,
+            "500 to 60000 ms for kind ek9000, found 400",
+        ),
+        (
+            of_kind("wago", "zero", "watchdog_ms = 450", "0x200"),
+            9,
+            "100 to 65500 ms, a multiple of 100 for kind wago",
+        ),
+        (of_kind("values", "values", "watchdog_ms = 500", "0"), 9, "1000 to 65000 ms, a multiple of 1000"),
+        (
+            of_kind("wago", "zero", "watchdog_ms = 500", "0"),
+            18,
+            "expected a register from 0x200 to 0x2FF of a wago",
+        ),
+        (of_kind("wago", "hold", "watchdog_ms = 500", "0x200"), 8, "expected what a wago can do, zero"),
+        (of_kind("turck", "values", "watchdog_ms = 500", "0x800"), 8, "expected what a turck can do, zero"),
+        (
+            of_kind("values", "hold", "watchdog_ms = 1000", "0"),
+            18,
+            "keeps its outputs when its watchdog fires",
+        ),
+        (
+            of_kind("wago", "zero", "watchdog_ms = 500", "0x200").replace("holding 0x200.12", "coil 12"),
+            18,
+            "expected a coil from 0x200 to 0x3FF of a wago",
+        ),
+        (
+            of_kind("wago", "zero", "watchdog_ms = 500", "0x200").replace("0x200.14", "0x264.14"),
+            4,
+            "101 output registers in one request, and a wago accepts at most 100",
+        ),
+        (
+            of_kind("ek9000", "zero", "watchdog_ms = 500", "0x800")
+                .replace("0x800.12\", safe = 0", "0x800.12\", safe = 1"),
+            18,
+            "expected 0, which the device gives when its watchdog fires",
+        ),
+    ];
+    for (text, line, expected) in cases {
+        let found = parse(&text).unwrap_err();
+        let at = format!("bench.toml: line {line}, column ");
+        let fits = found.iter().any(|one| one.starts_with(&at) && one.contains(expected));
+        assert!(fits, "line {line}, {expected:?} is not in {found:#?}");
+    }
+    // Safe values that are set in the device need not be 0.
+    let set = of_kind("values", "values", "watchdog_ms = 1000", "0")
+        .replace("0.12\", safe = 0", "0.12\", safe = 1");
+    assert_eq!(parse(&set).unwrap().devices[0].plan.safe.words[0], 1 << 12);
 }
 
 #[test]

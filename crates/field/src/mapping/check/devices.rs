@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 
-use couplers::{Fallback, Kind, MOST_IN, MOST_OUT, OutWords, Plan};
+use couplers::{Fallback, Kind, MOST_IN, MOST_OUT, OutWords, Plan, Span};
 use diagnostics::{
     Problem, Problems,
     toml::{StandIns, join},
@@ -13,15 +13,12 @@ use super::{
     super::{
         Device, InPoint, Origin, OutPoint,
         form::{DeviceForm, Sheet},
+        place::Place,
     },
     says,
     spans::Taken,
     unlike,
 };
-
-const KINDS: [Kind; 2] = [Kind::Bk9000, Kind::Plain];
-/// What outputs can do when the watchdog fires.
-const FALLBACKS: [Fallback; 2] = [Fallback::Zero, Fallback::Hold];
 
 /// Times between two exchanges, ms.
 const EXCHANGE_MS: std::ops::RangeInclusive<u16> = 10..=1000;
@@ -96,7 +93,7 @@ impl Devices {
             for (spans, most, what) in
                 [(&device.plan.reads, MOST_IN, "read"), (&device.plan.writes, MOST_OUT, "written")]
             {
-                let words: usize = spans.iter().map(couplers::Span::words).sum();
+                let words: usize = spans.iter().map(Span::words).sum();
                 if words > most {
                     let expected = format!(
                         "points within {most} registers that one request can have {what}, from the first to the last"
@@ -151,16 +148,17 @@ fn device(path: &str, name: &str, form: &DeviceForm) -> Result<Device, Box<Probl
         let expected = "a numeric address with a port, such as \"192.168.10.20:502\"";
         Box::new(unlike(&at("address"), expected, format_args!("{:?}", form.address)))
     })?;
-    let kind = KINDS.into_iter().find(|kind| kind.text() == form.kind);
-    let kind = kind.ok_or_else(|| word("kind", &form.kind, &KINDS.map(|kind| kind.text())))?;
+    let kinds: Vec<&str> = Kind::ALL.iter().map(|kind| kind.text()).collect();
+    let kind = Kind::from_text(&form.kind).ok_or_else(|| word("kind", &form.kind, &kinds))?;
     let can: Vec<&str> = kind.facts().fallbacks.iter().map(|fallback| fallback.text()).collect();
-    let fallback = FALLBACKS.into_iter().find(|fallback| fallback.text() == form.fallback);
-    let fallback = fallback.filter(|fallback| kind.facts().fallbacks.contains(fallback));
+    let fallback =
+        Fallback::from_text(&form.fallback).filter(|fallback| kind.facts().fallbacks.contains(fallback));
     let fallback = fallback.ok_or_else(|| {
         let expected = format!("what a {} can do, {}", kind.text(), can.join(" or "));
         Box::new(unlike(&at("fallback"), expected, format_args!("{:?}", form.fallback)))
     })?;
     let watchdog_ms = watchdog(&at("watchdog_ms"), kind, form)?;
+    let alive = form.alive.as_deref().map(|text| alive(&at("alive"), name, text)).transpose()?;
     if !EXCHANGE_MS.contains(&form.exchange_ms) {
         return Err(Box::new(unlike(&at("exchange_ms"), "10 to 1000 ms", form.exchange_ms)));
     }
@@ -178,28 +176,41 @@ fn device(path: &str, name: &str, form: &DeviceForm) -> Result<Device, Box<Probl
         writes: Vec::new(),
         safe: OutWords::ZERO,
         rest: OutWords::ZERO,
-        alive: None,
+        alive,
     };
     let (exchange_ms, timeout_ms) = (form.exchange_ms, form.timeout_ms);
     Ok(Device { name: name.to_owned(), address, exchange_ms, timeout_ms, plan })
 }
 
+/// The register that the program of a device increments.
+fn alive(path: &str, name: &str, text: &str) -> Result<Span, Box<Problem>> {
+    let place = format!("{name} {text}");
+    let found = Place::parse(&place).ok().filter(|place| !place.area.has_bits() && place.bit.is_none());
+    let place = found.ok_or_else(|| {
+        let expected = "a register that the program of the device increments, such as \"input 40\"";
+        Box::new(unlike(path, expected, format_args!("{text:?}")))
+    })?;
+    Ok(Span { area: place.area, first: place.address, count: 1 })
+}
+
 /// The time of the watchdog; 0 if the kind has none.
 fn watchdog(path: &str, kind: Kind, form: &DeviceForm) -> Result<u16, Box<Problem>> {
     let name = kind.text();
-    match (kind.facts().watchdog_ms, form.watchdog_ms) {
-        (None, None) => Ok(0),
-        (None, Some(found)) => {
+    let Some(watchdog) = &kind.facts().watchdog else {
+        return form.watchdog_ms.map_or(Ok(0), |found| {
             Err(Box::new(unlike(path, format_args!("no watchdog_ms: a {name} has no watchdog"), found)))
-        }
-        (Some(range), None) => {
-            let expected = format!("the time of the watchdog, {} to {} ms", range.start(), range.end());
-            Err(Box::new(unlike(path, expected, "none")))
-        }
-        (Some(range), Some(found)) if !range.contains(&found) => {
-            let expected = format!("{} to {} ms for a {name}", range.start(), range.end());
-            Err(Box::new(unlike(path, expected, found)))
-        }
-        (Some(_), Some(found)) => Ok(found),
+        });
+    };
+    let (times, step) = (&watchdog.times_ms, watchdog.step_ms);
+    let multiple = if step > 1 { format!(", a multiple of {step}") } else { String::new() };
+    let expected = format!(
+        "the time of the watchdog, {} to {} ms{multiple} for kind {name}",
+        times.start(),
+        times.end()
+    );
+    match form.watchdog_ms {
+        Some(found) if times.contains(&found) && found % step == 0 => Ok(found),
+        Some(found) => Err(Box::new(unlike(path, expected, found))),
+        None => Err(Box::new(unlike(path, expected, "none"))),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use couplers::{Fallback, Kind};
+use couplers::Fallback;
 use diagnostics::{Problem, toml::join};
 use interfaces::point::{Input, Kind as InputKind, Output, Point};
 
@@ -150,10 +150,9 @@ pub(super) fn output(
             return Err(Box::new(unlike(&at("safe"), expected, form.safe)));
         }
         Some((Fallback::Hold, kind)) if !form.rest => {
-            let why = if kind == Kind::Plain {
-                "has no watchdog"
-            } else {
-                "keeps its outputs when its watchdog fires"
+            let why = match kind.facts().watchdog {
+                None => "has no watchdog",
+                Some(_) => "keeps its outputs when its watchdog fires (fallback = \"hold\")",
             };
             let message = format!(
                 "its device {why}, so it stays on when the controller is lost; only an output with `rest = true` \
@@ -242,20 +241,19 @@ fn slot(
     let Some(device) = device else {
         return Ok(Slot { device: 0, word: 0, bit: None, format, low_first, invert: false });
     };
-    if let Some(plan) = devices.list.get(device).map(|device| &device.plan)
-        && !place.area.has_bits()
-    {
+    if let Some(plan) = devices.list.get(device).map(|device| &device.plan) {
         let facts = plan.kind.facts();
-        let legal = if direction == Direction::Out { facts.outputs } else { facts.inputs };
+        let (what, legal) = match (direction, place.area.has_bits()) {
+            (Direction::Out, true) => ("a coil", &facts.coils),
+            (Direction::Out, false) => ("a register", &facts.outputs),
+            (Direction::In, true) => ("a discrete input", &(0..=u16::MAX)),
+            (Direction::In, false) => ("a register", &facts.inputs),
+        };
         let last = place.address.checked_add(format.registers() - 1);
         let inside = last.is_some_and(|last| legal.contains(&place.address) && legal.contains(&last));
         if !inside {
-            let expected = format!(
-                "a register from {:#X} to {:#X} of a {}",
-                legal.start(),
-                legal.end(),
-                plan.kind.text()
-            );
+            let expected =
+                format!("{what} from {:#X} to {:#X} of a {}", legal.start(), legal.end(), plan.kind.text());
             return Err(Box::new(unlike(&at, expected, found())));
         }
     }
