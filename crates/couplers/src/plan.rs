@@ -127,7 +127,7 @@ pub enum PlanError {
     #[error("{count} addresses from {first:#06x}: between 1 and the last address 0xffff were expected")]
     BadSpan { first: u16, count: u16 },
     /// Addresses are not process data of the kind.
-    #[error("addresses {first:#06x} to {last:#06x} are not {direction} of a {kind}")]
+    #[error("addresses {first:#06x} to {last:#06x} are not {direction} of kind {kind}")]
     NotProcessData {
         kind: Kind,
         /// `inputs`, `outputs` or `coils`.
@@ -139,7 +139,7 @@ pub enum PlanError {
     #[error("a device needs at least one input")]
     NoInputs,
     /// The kind cannot fall back in this way.
-    #[error("a {kind} cannot fall back to {fallback}")]
+    #[error("kind {kind} cannot fall back to {fallback}")]
     NoFallback { kind: Kind, fallback: Fallback },
     /// The watchdog time is out of range, or not longer than the age at which data are stale.
     #[error("a watchdog of {found} ms, expected at least {least} ms")]
@@ -159,7 +159,7 @@ pub enum PlanError {
     },
     /// The kind refuses a request of this length.
     #[error(
-        "{found} {what} in one request, and a {kind} accepts at most {most}: use addresses closer together"
+        "{found} {what} in one request, and kind {kind} accepts at most {most}: use addresses closer together"
     )]
     LongRequest {
         kind: Kind,

@@ -34,7 +34,7 @@ const MOST_SILENCE: u64 = 116 * MS;
 const PAUSES: (u64, u64) = (20 * MS, 320 * MS);
 /// Period in which outputs, settings and status of the device are read back.
 const CHECKED_EVERY: u64 = 1000 * MS;
-const MOST_ENDING: u64 = 150 * MS; // time within which the outputs of the end must be confirmed
+const MOST_ENDING: u64 = 150 * MS; // time within which the final outputs must be confirmed
 /// Period in which the counter of a device's program is read, and time in which it must change. A device that stops is
 /// found within the sum and one exchange.
 const COUNTED_EVERY: u64 = 500 * MS;

@@ -344,14 +344,14 @@ fn requests_that_a_kind_refuses_are_refused_by_the_plan() {
     };
     let long = check(Kind::Wago, &|plan| plan.writes[0].count = 101).unwrap_err();
     assert!(
-        long.starts_with("101 output registers in one request, and a wago accepts at most 100"),
+        long.starts_with("101 output registers in one request, and kind wago accepts at most 100"),
         "{long}"
     );
     let coils = Span { area: Area::Coil, first: 0x200, count: 801 };
     assert!(check(Kind::Wago, &|plan| plan.writes = vec![coils]).is_err());
     let read_elsewhere = Span { area: Area::Coil, first: 0, count: 8 };
     let found = check(Kind::Wago, &|plan| plan.writes = vec![read_elsewhere]).unwrap_err();
-    assert_eq!(found, "addresses 0x0000 to 0x0007 are not coils of a wago");
+    assert_eq!(found, "addresses 0x0000 to 0x0007 are not coils of kind wago");
     for (kind, wrong, right) in [
         (Kind::Wago, 450, 400),
         (Kind::Ek9000, 499, 500),

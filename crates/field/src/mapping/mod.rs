@@ -6,7 +6,7 @@
 //! [device.arm]
 //! address = "192.168.10.20:502"       # numeric: resolving a name would allocate
 //! unit = 1
-//! kind = "bk9000"                     # or plain: a device without a watchdog
+//! kind = "bk9000"                     # one of couplers::Kind
 //! fallback = "zero"                   # what its outputs do when its watchdog fires
 //! watchdog_ms = 500
 //!

@@ -122,8 +122,8 @@ fn every_wrong_file_is_refused_with_its_line() {
         (device("unit = 1\n", ""), 4, "device.arm has no key unit"),
         (device("unit = 1", "unit = 256"), 6, "expected a whole number from 0 to 255"),
         (device("\"bk9000\"", "\"bk9001\""), 7, "expected one of bk9000, ek9000, wago, turck, values, plain"),
-        (device("\"zero\"", "\"freeze\""), 8, "expected what a bk9000 can do, zero"),
-        (device("\"zero\"", "\"hold\""), 8, "expected what a bk9000 can do, zero"),
+        (device("\"zero\"", "\"freeze\""), 8, "expected what kind bk9000 can do, zero"),
+        (device("\"zero\"", "\"hold\""), 8, "expected what kind bk9000 can do, zero"),
         (device("watchdog_ms = 500\n", ""), 4, "expected the time of the watchdog, 1 to 65535 ms"),
         (
             device("watchdog_ms = 500", "watchdog_ms = 100"),
@@ -178,7 +178,7 @@ fn every_wrong_file_is_refused_with_its_line() {
         (
             changed("arm input 8.9", "arm input 0x100.9"),
             13,
-            "expected a register from 0x0 to 0xFF of a bk9000",
+            "expected a register from 0x0 to 0xFF of kind bk9000",
         ),
         (changed("arm input 8.9\" }", "arm input 8.9\", stale_ms = 20 }"), 13, "expected 40 to 10000 ms"),
         (changed("arm input 8.9\" }", "arm input 8.9\", then = 2 }"), 13, "expected 0 to 1, found 2"),
@@ -260,7 +260,7 @@ fn every_wrong_file_is_refused_with_its_line() {
         (
             as_output("{ at = \"arm holding 0x1120.0\", safe = 0 }"),
             18,
-            "expected a register from 0x800 to 0x8FF of a bk9000",
+            "expected a register from 0x800 to 0x8FF of kind bk9000",
         ),
         (as_output("{ at = \"arm holding 0x800.13\", safe = 0 }"), 19, "as quick-change.lock does"),
         (
@@ -328,10 +328,14 @@ fn what_a_kind_cannot_do_is_refused_with_its_line() {
         (
             of_kind("wago", "zero", "watchdog_ms = 500", "0"),
             18,
-            "expected a register from 0x200 to 0x2FF of a wago",
+            "expected a register from 0x200 to 0x2FF of kind wago",
         ),
-        (of_kind("wago", "hold", "watchdog_ms = 500", "0x200"), 8, "expected what a wago can do, zero"),
-        (of_kind("turck", "values", "watchdog_ms = 500", "0x800"), 8, "expected what a turck can do, zero"),
+        (of_kind("wago", "hold", "watchdog_ms = 500", "0x200"), 8, "expected what kind wago can do, zero"),
+        (
+            of_kind("turck", "values", "watchdog_ms = 500", "0x800"),
+            8,
+            "expected what kind turck can do, zero",
+        ),
         (
             of_kind("values", "hold", "watchdog_ms = 1000", "0"),
             18,
@@ -340,12 +344,12 @@ fn what_a_kind_cannot_do_is_refused_with_its_line() {
         (
             of_kind("wago", "zero", "watchdog_ms = 500", "0x200").replace("holding 0x200.12", "coil 12"),
             18,
-            "expected a coil from 0x200 to 0x3FF of a wago",
+            "expected a coil from 0x200 to 0x3FF of kind wago",
         ),
         (
             of_kind("wago", "zero", "watchdog_ms = 500", "0x200").replace("0x200.14", "0x264.14"),
             4,
-            "101 output registers in one request, and a wago accepts at most 100",
+            "101 output registers in one request, and kind wago accepts at most 100",
         ),
         (
             of_kind("ek9000", "zero", "watchdog_ms = 500", "0x800")

@@ -154,7 +154,7 @@ fn device(path: &str, name: &str, form: &DeviceForm) -> Result<Device, Box<Probl
     let fallback =
         Fallback::from_text(&form.fallback).filter(|fallback| kind.facts().fallbacks.contains(fallback));
     let fallback = fallback.ok_or_else(|| {
-        let expected = format!("what a {} can do, {}", kind.text(), can.join(" or "));
+        let expected = format!("what kind {} can do, {}", kind.text(), can.join(" or "));
         Box::new(unlike(&at("fallback"), expected, format_args!("{:?}", form.fallback)))
     })?;
     let watchdog_ms = watchdog(&at("watchdog_ms"), kind, form)?;
@@ -198,7 +198,7 @@ fn watchdog(path: &str, kind: Kind, form: &DeviceForm) -> Result<u16, Box<Proble
     let name = kind.text();
     let Some(watchdog) = &kind.facts().watchdog else {
         return form.watchdog_ms.map_or(Ok(0), |found| {
-            Err(Box::new(unlike(path, format_args!("no watchdog_ms: a {name} has no watchdog"), found)))
+            Err(Box::new(unlike(path, format_args!("no watchdog_ms: kind {name} has no watchdog"), found)))
         });
     };
     let (times, step) = (&watchdog.times_ms, watchdog.step_ms);

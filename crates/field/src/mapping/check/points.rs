@@ -252,8 +252,12 @@ fn slot(
         let last = place.address.checked_add(format.registers() - 1);
         let inside = last.is_some_and(|last| legal.contains(&place.address) && legal.contains(&last));
         if !inside {
-            let expected =
-                format!("{what} from {:#X} to {:#X} of a {}", legal.start(), legal.end(), plan.kind.text());
+            let expected = format!(
+                "{what} from {:#X} to {:#X} of kind {}",
+                legal.start(),
+                legal.end(),
+                plan.kind.text()
+            );
             return Err(Box::new(unlike(&at, expected, found())));
         }
     }
