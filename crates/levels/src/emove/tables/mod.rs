@@ -27,6 +27,7 @@ pub mod remove_tool;
 pub mod resume;
 pub mod returning;
 pub mod search;
+pub mod slide;
 pub mod track;
 mod variables;
 pub mod withdraw;
@@ -283,8 +284,8 @@ commands! {
         QcAttach: goals::ATTACHED           => exchange::exchange then qc_attach::qc_lift then qc_attach::qc_attach;
         Withdraw: goals::WITHDRAWN          => withdraw::withdraw;
         InsertTool: goals::INSERTED         => insert_tool::insert_tool;
-        ReleaseTool: goals::TOOL_RELEASED   => release_tool::release_tool;
-        AcquireTool: goals::HELD            => acquire_tool::acquire_tool;
+        ReleaseTool: goals::TOOL_RELEASED   => slide::slide then release_tool::release_tool;
+        AcquireTool: goals::HELD            => slide::slide then acquire_tool::acquire_tool;
         RemoveTool: goals::REMOVED          => remove_tool::remove_tool;
     }
 }

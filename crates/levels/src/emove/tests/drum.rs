@@ -34,6 +34,7 @@ pub const SCENARIOS: &[fn()] = &[
     acquire_tool_at_an_empty_drum_fails_and_release_tool_moves_out,
     contact_before_the_drum_is_reported_as_occupied_drum,
     insert_tool_requires_a_calibration_at_tool_safe,
+    slide_after_a_loss_of_power_calibrates_the_sensor,
     tool_commands_refuse_an_unknown_object,
     robot_moved_away_from_the_drum_clears_the_tool_command,
 ];
@@ -447,6 +448,32 @@ fn interrupted_acquisition_resumes() {
     }
     let mut bench = Bench::ready("HOME", 3);
     assert_eq!(run(&mut bench, AcquireTool), error(Reason::NotPrepared));
+}
+
+#[test]
+fn slide_after_a_loss_of_power_calibrates_the_sensor() {
+    let mut bench = inserted();
+    interrupt(&mut bench, ReleaseTool, "REL-SLIDE", at(0.0, -1.0));
+    bench.world.prim.calibrated = false;
+    assert_eq!(run(&mut bench, ReleaseTool), DONE);
+    assert_eq!(bench.log(), ["CAL-SENSOR", "GO-UNTIL REL-SLIDE REL-MY", "DELTA-MOVE REL-BACK"]);
+    let mut bench = empty();
+    interrupt(&mut bench, AcquireTool, "ACQ-SLIDE", at(0.1, -1.0));
+    bench.world.prim.calibrated = false;
+    assert_eq!(acquire_from(&mut bench), DONE);
+    assert_eq!(bench.log(), ["CAL-SENSOR", "GO-UNTIL ACQ-SLIDE ACQ-MY", "GRASP 250"]);
+    // Closed fingers may touch the tool.
+    let mut bench = inserted();
+    interrupt(&mut bench, ReleaseTool, "REL-SLIDE", at(0.0, -1.0));
+    (bench.world.prim.calibrated, bench.world.tool_grip.opening) = (false, 100);
+    assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared));
+    assert!(orders(&bench).is_empty(), "{:?}", bench.log());
+    // A calibration that has no effect is not repeated.
+    let mut bench = inserted();
+    interrupt(&mut bench, ReleaseTool, "REL-SLIDE", at(0.0, -1.0));
+    bench.world.prim.calibrated = false;
+    bench.spoil("CAL-SENSOR", DeliveryFault::Prim(PrimReport::SensorError, Reason::SensorError));
+    assert_eq!(run(&mut bench, ReleaseTool), error(Reason::SensorError));
 }
 
 /// ACQUIRE-TOOL sent again; the tool is between the fingers before they close.
