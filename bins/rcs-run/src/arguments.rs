@@ -105,11 +105,12 @@ pub struct RunArguments {
     /// Keep what the controller knows in this file, for --resume after a loss of power (docs/resume.md)
     #[arg(long, value_name = "FILE")]
     pub journal: Option<PathBuf>,
-    /// Start with what the controller knew in the run of this journal, and wait for `job go`
+    /// Start with what the controller knew in the run of this journal or log, and wait for `job go`
     ///
     /// Nothing moves, opens or calibrates by itself. The run continues this journal, unless --journal names another
-    /// file. A simulated cell continues from its last save, at most a second before.
-    #[arg(long, value_name = "JOURNAL")]
+    /// file; with a log, --journal names the journal to begin. A simulated cell continues from its last save, at most
+    /// a second before.
+    #[arg(long, value_name = "FILE")]
     pub resume: Option<PathBuf>,
     /// Keep the items of the Data System in this SQLite file, created if missing [default: keep them during the run
     /// only]

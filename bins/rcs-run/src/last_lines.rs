@@ -40,6 +40,9 @@ impl fmt::Display for LastLines<'_> {
         for part in held.into_iter().chain(others) {
             writeln!(f, "{part}")?;
         }
+        if let Some(trouble) = &result.journal_trouble {
+            writeln!(f, "{trouble}; the run cannot be resumed from it")?;
+        }
         let Some(log) = result.log.as_deref().map(shell::path) else { return Ok(()) };
         let tick = match ending {
             Ending::Failed(account) => format!(" --tick {}", account.first.shown_at()),

@@ -18,6 +18,7 @@ use rcs_core::{
     plain::{EnumSchema, VariantSchema},
     table::{ActionText, Row, Table, Variable},
 };
+use record::journal::DOUBT;
 
 use crate::rcs_run::error::Error;
 
@@ -41,7 +42,7 @@ in small letters: `letting-go` for `LettingGo`.
 ";
 
 pub fn tables() -> Result<ExitCode, Error> {
-    console::answer(&page(Ladder::processes()))?;
+    console::answer(&(page(Ladder::processes()) + &of_resume()))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -56,6 +57,14 @@ fn page(processes: &'static [ProcessInfo]) -> String {
         let earlier = processes.get(..index).unwrap_or_default();
         append_process(&mut text, process, earlier);
     }
+    text
+}
+
+/// The table that no process consults.
+fn of_resume() -> String {
+    let head = "\n## Resume\n\nConsulted before the first tick of a resumed run.\n\n### 1. ";
+    let mut text = format!("{head}{}\n\n", DOUBT.name);
+    append_table(&mut text, &DOUBT, &[&DOUBT]);
     text
 }
 

@@ -68,7 +68,7 @@ fn hand_off_of_the_journal(memory: &CommonMemory) {
         times.push(started.elapsed());
         thread::sleep(Duration::from_millis(1));
     }
-    println!("an entry is {} bytes, a journal {}", journal::SLOT, journal::LENGTH);
+    println!("an entry is {} bytes, a journal {}", journal::SLOT, journal::length());
     tell("hand-off of an entry", times);
     match journal.finish(None) {
         Some(trouble) => eprintln!("{trouble}"),

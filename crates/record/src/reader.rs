@@ -217,6 +217,11 @@ impl Log {
         self.segments.len()
     }
 
+    /// True if a part of the file from this one on is damaged.
+    pub(crate) fn is_damaged_from(&self, part: usize) -> bool {
+        self.segments.iter().skip(part).any(|segment| matches!(segment, Segment::Damaged(..)))
+    }
+
     /// The recorded ticks from the first whole images in a part of the file on.
     pub(crate) fn ticks_from<C: Borrow<Codecs>>(
         &self,

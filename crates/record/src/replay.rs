@@ -130,7 +130,8 @@ pub fn task_data(log: &Log) -> Result<Store, ReplayError> {
 }
 
 /// The task data among the attachments, in the order in which they were loaded.
-pub(crate) fn log_sources(attachments: &[Attachment]) -> Vec<Source> {
+#[must_use]
+pub fn log_sources(attachments: &[Attachment]) -> Vec<Source> {
     let source = |attachment: &Attachment| {
         Some(attachment.source(attachment.name.strip_prefix(Attachment::TASK_DATA)?))
     };

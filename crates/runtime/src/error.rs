@@ -103,19 +103,28 @@ pub enum StartError {
          --shared-memory on"
     )]
     ResumeStandBy,
-    #[error("{0}; without --resume the run starts as after power-on, with no knowledge")]
+    #[error(
+        "{0}; --resume LOG starts with the last image of its log; without --resume the run starts as after switching \
+         on, and knows nothing"
+    )]
     Journal(#[from] record::journal::JournalError),
+    #[error(
+        "the log {} cannot be used: {source}; without --resume the run starts as after switching on, and knows nothing",
+        path.display()
+    )]
+    ResumedLog { path: PathBuf, source: record::journal::LoggedError },
     /// The journal belongs to a run with other data.
     #[error(
-        "the journal {} belongs to another run: {}; start with the data, job and cell of that run, or without --resume",
+        "{} belongs to another run: {}; start with the data, job and cell of that run, or without --resume",
         path.display(), differences.join("; ")
     )]
     OtherJournal { path: PathBuf, differences: Vec<String> },
-    #[error("the run of the journal {} has ended: nothing is left to resume; start without --resume", .0.display())]
+    #[error("the run of {} has ended: nothing is left to resume; start without --resume", .0.display())]
     NothingToResume(PathBuf),
     /// The simulated cell cannot continue.
     #[error(
-        "the simulated cell of the journal cannot continue: {}: {why}; start without --resume, which sets up a new cell",
+        "the simulated cell of the run cannot continue: {}: {why}; with --resume LOG name the journal beside which it \
+         is saved with --journal; without --resume the run sets up a new cell",
         path.display()
     )]
     ResumedCell { path: PathBuf, why: String },

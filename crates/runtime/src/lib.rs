@@ -24,6 +24,7 @@ mod cell_view;
 pub mod change;
 mod commanded;
 pub mod config;
+mod contradiction;
 mod egm;
 pub mod error;
 pub mod event;

@@ -89,6 +89,9 @@ pub const SIMULATED: &str =
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct RunResult {
+    /// Why the run cannot be resumed from its journal; not written without trouble.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub journal_trouble: Option<String>,
     pub job: String,
     pub ending: &'static str, // how the run ended: `finished`, `stopped` or `failed`
     pub data: DataResult,

@@ -1,8 +1,8 @@
 //! The start of a run with what the controller knew in an earlier one (docs/design/resume.md).
 
 use std::{
-    fmt,
-    path::PathBuf,
+    fmt, fs,
+    path::{Path, PathBuf},
     time::{SystemTime, UNIX_EPOCH},
 };
 
@@ -11,9 +11,13 @@ use interfaces::{DeviceOutputs, emove::GoneTo};
 use neighbours::workstation::player::{Hwsc, PlaceInJob};
 use os_io::files;
 use plant::{Cell, CellDescription, RestoreError};
-use rcs_core::digest::Digest;
-use record::journal::{self, Contents, Entry, HEARTBEAT, Identity};
-use taskdata::load::{Job, Store};
+use rcs_core::{digest::Digest, tick::Tick};
+use record::{
+    Attachment, Log,
+    journal::{self, Contents, Entry, HEARTBEAT, Identity, LoggedError, RunEnd, Witnesses},
+    replay,
+};
+use taskdata::load::{Job, Source, Store};
 
 use crate::{
     boards::Controller,
@@ -28,20 +32,20 @@ const OUTAGE: u64 = 50; // ticks for which a simulated cell is without power: 2 
 const OLDEST_CELL: u64 = 10 * HEARTBEAT;
 
 pub struct Resumed {
-    path: PathBuf,
+    path: PathBuf, // the journal or the log
     contents: Contents,
     cell: Vec<u8>,
+    cell_path: PathBuf,
     is_simulated: bool, // the robot is simulated, too
 }
 
 /// The time of day, ms since 1970.
 pub fn now() -> u64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    u64::try_from(since.as_millis()).unwrap_or(u64::MAX)
+    since_1970(SystemTime::now())
 }
 
 pub fn entry(closed: &ClosedLoop<Controller>, job: Option<&Hwsc>, written: u64) -> Entry {
-    let PlaceInJob { line, is_begun, delayed } = job.map(Hwsc::place_in_job).unwrap_or_default();
+    let PlaceInJob { line, is_begun, delayed, is_asked } = job.map(Hwsc::place_in_job).unwrap_or_default();
     Entry {
         tick: closed.tick(),
         written,
@@ -49,6 +53,7 @@ pub fn entry(closed: &ClosedLoop<Controller>, job: Option<&Hwsc>, written: u64) 
         line,
         begun: is_begun,
         delayed,
+        asks_line: is_asked,
         generation: closed.generations().number(),
         hws: *closed.command(),
         memory: journal::kept(closed.memory()),
@@ -57,8 +62,19 @@ pub fn entry(closed: &ClosedLoop<Controller>, job: Option<&Hwsc>, written: u64) 
 
 /// Data, job and cell of a run, by their digests, and its program.
 pub fn identity(config: &RunConfig, store: &Store, job: &Job, cell: &str) -> Identity {
+    let job = (job.name.as_str(), job.source().text.as_ref());
+    identity_of(env!("CARGO_PKG_VERSION"), store.sources(), job, cell, &config.robot.to_string())
+}
+
+fn identity_of(
+    program: &str,
+    sources: &[Source],
+    (job, lines): (&str, &str),
+    cell: &str,
+    robot: &str,
+) -> Identity {
     let mut data = Digest::new();
-    for source in store.sources() {
+    for source in sources {
         data.add(source.name.as_bytes());
         data.add(source.text.as_bytes());
     }
@@ -68,28 +84,71 @@ pub fn identity(config: &RunConfig, store: &Store, job: &Job, cell: &str) -> Ide
         digest.to_string()
     };
     let entries = [
-        (journal::PROGRAM, env!("CARGO_PKG_VERSION").to_owned()),
+        (journal::PROGRAM, program.to_owned()),
         ("data", data.to_string()),
-        ("job", format!("{} {}", job.name, of(&job.source().text))),
+        ("job", format!("{job} {}", of(lines))),
         ("cell", of(cell)),
-        ("robot", config.robot.to_string()),
+        ("robot", robot.to_owned()),
     ];
     entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }
 
+/// The identity of the run of a log, as that of a journal.
+fn identity_of_log(log: &Log) -> Identity {
+    let fact = |key: &str| log.run.get(key).map_or("", String::as_str);
+    let text = |name: &str| {
+        let found = log.attachment(name).map(|attachment| attachment.data.as_slice());
+        String::from_utf8_lossy(found.unwrap_or_default()).into_owned()
+    };
+    let (lines, cell) = (text(Attachment::JOB), text(Attachment::CELL));
+    let sources = replay::log_sources(&log.attachments);
+    identity_of(fact("version"), &sources, (fact("job"), &lines), &cell, fact("robot"))
+}
+
+/// The contents of a journal, with the end of its run as the files beside it show it.
+fn of_journal(path: &Path, cell: &Entry) -> Result<Contents, StartError> {
+    let contents = journal::open(path)?;
+    let log = contents.identity.get(journal::LOG).and_then(|log| Log::open(Path::new(log)).ok());
+    let changed = fs::metadata(path).and_then(|metadata| metadata.modified()).ok().map(since_1970);
+    Ok(journal::judged(contents, &Witnesses { cell: Some(cell), log: log.as_ref(), changed }))
+}
+
+/// The contents of a log: the image of tick `at`, or the last one.
+fn of_log(path: &Path, at: Option<Tick>) -> Result<Contents, StartError> {
+    let failed = |source: LoggedError| StartError::ResumedLog { path: path.to_owned(), source };
+    let log = Log::open(path).map_err(|error| failed(error.into()))?;
+    journal::logged(&log, identity_of_log(&log), at).map_err(failed)
+}
+
+fn since_1970(time: SystemTime) -> u64 {
+    let since = time.duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_millis()).unwrap_or(u64::MAX)
+}
+
 impl Resumed {
-    /// Read the journal of a configuration, if it names one. Fails if it cannot be used, or the run cannot be resumed.
+    /// Read the journal or the log of a configuration, if it names one. Fails if it cannot be used, or the run cannot be
+    /// resumed.
     pub fn load(config: &RunConfig) -> Result<Option<Self>, StartError> {
         let Some(path) = &config.resume else { return Ok(None) };
         if config.boards != Boards::One {
             return Err(StartError::ResumeBoards);
         }
-        let mut contents = journal::open(path)?;
-        let beside = journal::cell_beside(path);
+        let is_log = journal::is_log(path);
+        let beside = journal::cell_beside(config.journal.as_ref().filter(|_| is_log).unwrap_or(path));
+        if !is_log {
+            // The reason why a journal cannot be used is more important than that of its cell.
+            journal::open(path)?;
+        }
         let failed = |why: String| StartError::ResumedCell { path: beside.clone(), why };
         let bytes = files::read(&beside, LARGEST_CELL).map_err(|error| failed(error.to_string()))?;
         let (entry, saved) = journal::read_cell(&bytes)
             .ok_or_else(|| failed("it is damaged, or of a program with other buffers".to_owned()))?;
+        let is_simulated = config.robot.kind == RobotKind::Sim;
+        let mut contents = if is_log {
+            of_log(path, is_simulated.then_some(entry.tick))?
+        } else {
+            of_journal(path, &entry)?
+        };
         if contents.newest.over {
             return Err(StartError::NothingToResume(path.clone()));
         }
@@ -97,13 +156,12 @@ impl Resumed {
         if newest.since(entry.tick) > OLDEST_CELL {
             return Err(failed(format!("it is of tick {}, the last entry of tick {newest}", entry.tick)));
         }
-        let is_simulated = config.robot.kind == RobotKind::Sim;
-        if is_simulated {
+        if is_simulated && !is_log {
             // The simulated cell ends with the run, so the power fails in the tick of its last save.
-            contents = Contents { newest: entry, torn: false, ..contents };
+            contents = Contents { newest: entry, end: RunEnd::Reached, ..contents };
         }
         let cell = saved.to_vec();
-        Ok(Some(Self { path: path.clone(), contents, cell, is_simulated }))
+        Ok(Some(Self { path: path.clone(), contents, cell, cell_path: beside, is_simulated }))
     }
 
     pub const fn entry(&self) -> &Entry {
@@ -113,17 +171,18 @@ impl Resumed {
     /// The first entry of the journal that this run writes.
     pub fn first(&self) -> Entry {
         let memory = self.contents.memory(self.entry().tick);
-        Entry { memory: journal::kept(&memory), ..*self.entry() }
+        Entry { memory: journal::kept(&memory), asks_line: self.place().is_asked, ..*self.entry() }
     }
 
-    pub const fn place(&self) -> PlaceInJob {
-        let Entry { line, begun, delayed, .. } = *self.entry();
-        PlaceInJob { line, is_begun: begun, delayed }
+    pub fn place(&self) -> PlaceInJob {
+        let Entry { line, begun, delayed, asks_line, .. } = *self.entry();
+        let is_asked = asks_line || journal::asks_for_line(self.contents.end);
+        PlaceInJob { line, is_begun: begun, delayed, is_asked }
     }
 
     /// The saved cell. Errors: [`StartError::ResumedCell`] if it is of another description or version.
     pub fn cell(&self, description: &CellDescription) -> Result<Cell, StartError> {
-        let path = journal::cell_beside(&self.path);
+        let path = self.cell_path.clone();
         let failed = |error: RestoreError| StartError::ResumedCell { path, why: error.to_string() };
         let mut cell = Cell::restore(description, &self.cell).map_err(failed)?;
         if self.is_simulated {
@@ -182,12 +241,14 @@ impl fmt::Display for Resumed {
             (None, None) => f.write_str("; the place of the robot is not known")?,
         }
         let begun = if entry.begun { "" } else { ", not begun" };
-        write!(f, "; line {} of the job{begun}; knowledge of ", entry.line)?;
+        let asked = if self.place().is_asked { "the line of the job is not known, recorded is " } else { "" };
+        write!(f, "; {asked}line {} of the job{begun}; knowledge of ", entry.line)?;
         let age = now().saturating_sub(entry.written) / 1000;
         match entry.written {
-            0 => write!(f, "tick {}", entry.tick),
-            _ => write!(f, "tick {}, {age} s ago", entry.tick),
+            0 => write!(f, "tick {}", entry.tick)?,
+            _ => write!(f, "tick {}, {age} s ago", entry.tick)?,
         }
+        self.contents.end.doubt().map_or(Ok(()), |why| write!(f, "; {why}"))
     }
 }
 

@@ -37,6 +37,7 @@ use crate::{
     boards::Controller,
     cell_view::View,
     config::{ClockKind, RunConfig},
+    contradiction::Contradictions,
     event::Event,
     field::FieldPort,
     live::Live,
@@ -72,6 +73,8 @@ pub struct Run {
     pub(crate) log: Option<Log>,
     log_path: Option<PathBuf>,
     journal: Option<Journal>,
+    journal_trouble: Option<String>,        // why the journal is not written
+    contradictions: Option<Contradictions>, // of a resumed run, until its job continues
     data: DataResult,
     live: Option<Live>,
     pace: Pace,
@@ -248,6 +251,7 @@ impl Run {
         let (closed, neighbours) = (&mut self.closed, &mut self.neighbours);
         let progress = closed.exchange(|desk| neighbours.step(desk));
         self.write_journal(tick);
+        self.tell_contradictions(tick);
         self.load_for_workstation(tick);
         self.tell_operators(tick);
         self.note_neighbours(tick);

@@ -128,7 +128,10 @@ impl Setup {
         let log = match &config.log {
             LogTarget::None => None,
             LogTarget::File(path) => {
-                let others = [&config.inputs, &config.database].into_iter().flatten().map(PathBuf::as_path);
+                let others = [&config.inputs, &config.database, &config.resume]
+                    .into_iter()
+                    .flatten()
+                    .map(PathBuf::as_path);
                 check_output(path, Format::Mcap, others.chain([config.outbox.as_path()]))
                     .map_err(|source| RecordError::Create { path: path.clone(), source })?;
                 Some(LogFile::claim(path)?)
@@ -155,7 +158,12 @@ impl Setup {
         if let Some(resumed) = &resumed {
             resumed.check(&identity)?;
         }
-        let journal = config.journal.as_ref().or(config.resume.as_ref());
+        // A log is not continued: a run that is resumed from a log writes a journal if one is named.
+        let journal = config.resume.as_ref().filter(|path| !record::journal::is_log(path));
+        let journal = config.journal.as_ref().or(journal);
+        let mut identity = identity;
+        let written = log.as_ref().and_then(|log| std::path::absolute(log.path()).ok());
+        identity.extend(written.map(|path| (record::journal::LOG.to_owned(), path.display().to_string())));
         let first = resumed.as_ref().map(Resumed::first);
         let journal = journal.map(|path| Journal::start(path, &identity, first.as_ref())).transpose()?;
         // Last, so that no byte is sent to the robot if the run cannot begin.

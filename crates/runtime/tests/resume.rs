@@ -3,9 +3,14 @@
 use std::{
     fs,
     path::{Path, PathBuf},
+    thread,
+    time::Duration,
 };
 
-use record::journal::{self, Entry};
+use record::{
+    Log,
+    journal::{self, Entry, HEARTBEAT},
+};
 use runtime::{LogTarget, Run, RunConfig, RunOutcome, StartError};
 use sessions::operator::Event;
 
@@ -82,6 +87,32 @@ fn interrupted_calibration_does_not_start_by_itself() {
 }
 
 #[test]
+fn gripper_without_calibration_is_opened_by_hand_after_a_resume() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = in_directory(&directory);
+    cut_off("linkbar", 40, &path);
+    let mut run = Run::new(RunConfig { resume: Some(path), ..config("linkbar") }, Box::new(())).unwrap();
+    run.ask("tester", Event::Connected).expect("an operator can connect");
+    for _ in 0..50 {
+        run.step();
+    }
+    let ask = |run: &mut Run, line: &str| run.ask("tester", Event::Line(line.to_owned()));
+    let refused =
+        ask(&mut run, "resume held nothing").expect_err("no sensor shows that the gripper is empty");
+    assert!(refused.contains("`confirm by hand` and POSITION"), "{refused}");
+    for line in ["confirm by hand", "POSITION -- +0 -- 0 +0 HOME 0 -- 0"] {
+        ask(&mut run, line).unwrap_or_else(|why| panic!("{line}: {why}"));
+        run.step();
+    }
+    let is_open = |run: &Run| run.memory().emove.estimates.empty;
+    let finished = (0..3_000).any(|_| run.step() && is_open(&run) && ask(&mut run, "job go").is_ok());
+    assert!(finished, "{:?}", run.memory().task.status);
+    run.ask("tester", Event::Disconnected).expect("an operator can leave");
+    let outcome = run.complete();
+    assert!(outcome.is_finished(), "{}", outcome.ending.text());
+}
+
+#[test]
 fn contact_at_the_drum_is_no_collision_of_the_resumed_run() {
     let directory = tempfile::tempdir().unwrap();
     let path = in_directory(&directory);
@@ -123,6 +154,53 @@ fn damaged_cell_and_missing_journal_are_refused() {
     bytes[middle] ^= 1;
     fs::write(&beside, bytes).unwrap();
     assert!(matches!(resume().err(), Some(StartError::ResumedCell { .. })));
+}
+
+/// Runs a job for some ticks with a journal and a log, drops the run, and waits until the log has these ticks.
+fn cut_off_with_log(job: &str, ticks: u64, path: &Path, log: &Path) {
+    let target = LogTarget::File(log.to_owned());
+    let config = RunConfig { journal: Some(path.to_owned()), log: target, ..config(job) };
+    let mut run = Run::new(config, Box::new(())).expect("the job is sound");
+    while run.last_tick().0 < ticks && run.step() {}
+    drop(run);
+    for _ in 0..600 {
+        let last = Log::open(log).ok().and_then(|log| log.last_tick());
+        if last.is_some_and(|last| last.0 >= ticks - HEARTBEAT) {
+            return;
+        }
+        thread::sleep(Duration::from_millis(50));
+    }
+    panic!("the log does not reach tick {ticks}");
+}
+
+#[test]
+fn run_without_journal_is_resumed_from_its_log() {
+    let directory = tempfile::tempdir().unwrap();
+    let (path, log) = (in_directory(&directory), directory.path().join("run.mcap"));
+    cut_off_with_log("linkbar", 1_900, &path, &log);
+    let Entry { line, .. } = journal::open(&path).unwrap().newest;
+    fs::remove_file(&path).unwrap();
+    let config = |job| RunConfig { resume: Some(log.clone()), journal: Some(path.clone()), ..config(job) };
+    let other = Run::new(config("clevis"), Box::new(())).err();
+    assert!(matches!(other, Some(StartError::OtherJournal { .. })), "{other:?}");
+    let mut run = Run::new(config("linkbar"), Box::new(())).expect("the log is sound");
+    run.ask("tester", Event::Connected).expect("an operator can connect");
+    let mut ask = |line: &str| run.ask("tester", Event::Line(line.to_owned()));
+    let refused = ask("job go").expect_err("the line is not known");
+    assert!(
+        refused.contains(&format!("the last recorded one is {line}: name it with `resume line N`")),
+        "{refused}"
+    );
+    assert!(ask("resume").expect("it is a question").contains("line of the job: not known"));
+    assert!(ask("resume line many").is_err() && ask("resume line 99").is_err());
+    // Killed again before a person has named the line, the run still asks for it.
+    assert!(journal::open(&path).unwrap().newest.asks_line);
+    ask(&format!("resume line {line}")).expect("the job has this line");
+    ask("job go").expect("the line is known");
+    run.ask("tester", Event::Disconnected).expect("an operator can leave");
+    let outcome = run.complete();
+    assert!(outcome.is_finished(), "{}", outcome.ending.text());
+    assert!(journal::open(&path).unwrap().newest.over);
 }
 
 #[test]

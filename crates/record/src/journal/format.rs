@@ -1,16 +1,18 @@
 //! The bytes of a journal (docs/design/resume.md "Format").
 //!
 //! ```text
-//! head     RCSJRNL\0   version u32   slots u32   layout u64   length u32   identity, text   zeros   hash u64
+//! head     RCSJRNL\0   version u32   slots u32   layout u64   description u32   length u32   identity, text   zeros   hash u64
+//! layout   description of the entries, compressed   zeros
 //! slot 0   sequence u64   entry   hash u64   zeros
 //! ...
+//! note     tick u64   zeros
 //! ```
 //!
 //! All numbers are little-endian. The hash of a slot includes that of the head, so that a slot of another journal is
 //! invalid. Entry `n` is in slot `n mod slots`: an interrupted write damages only one slot, so the earlier entries
-//! stay.
+//! stay. The note is the first tick whose entry the disk did not accept, and zero when it has accepted a later one.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::LazyLock};
 
 use interfaces::{CommonMemory, HwsCommand};
 use rcs_core::{
@@ -20,19 +22,37 @@ use rcs_core::{
     tick::Tick,
 };
 
-use super::kept::{doubted, resumed};
-use crate::layout;
+use super::{
+    described::{differences, layout_of_entries, packed, unpacked},
+    doubt::{RunEnd, doubted},
+    kept::resumed,
+};
 
 pub const MAGIC: [u8; 8] = *b"RCSJRNL\0"; // first bytes of every journal
-const VERSION: u32 = 1;
-const BLOCK: usize = 4096; // unit of the parts of a journal, bytes: no two slots share a block of the disk
+const VERSION: u32 = 2;
+const BLOCK: usize = 4096; // unit of the parts of a journal, bytes: no two parts share a block of the disk
 const HEAD: usize = BLOCK; // bytes of the head
 pub const SLOTS: usize = 8;
 pub const SLOT: usize = (8 + Entry::SIZE + 8).div_ceil(BLOCK) * BLOCK; // bytes of a slot
-pub const LENGTH: usize = HEAD + SLOTS * SLOT; // bytes of a journal
 pub const FIRST: u64 = 1;
 const HEAD_HASH: usize = HEAD - 8; // position of the hash in the head
-const IDENTITY: usize = 28; // position of the identity in the head
+const DESCRIBED: usize = 24; // position of the length of the description in the head
+const IDENTITY: usize = 32; // position of the identity in the head
+
+/// Position of the first slot.
+static BEGIN: LazyLock<usize> = LazyLock::new(|| HEAD + packed().len().div_ceil(BLOCK) * BLOCK);
+
+/// The length of a journal, bytes.
+#[must_use]
+pub fn length() -> usize {
+    note_at() + BLOCK
+}
+
+/// The position of the note on trouble.
+#[must_use]
+pub fn note_at() -> usize {
+    *BEGIN + SLOTS * SLOT
+}
 
 /// The knowledge of a controller after a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -49,6 +69,8 @@ pub struct Entry {
     pub begun: bool,
     /// Lines `** after` before it whose actions have not started, one bit each, the nearest first.
     pub delayed: u16,
+    /// A person must name the line, and has not named it.
+    pub asks_line: bool,
     /// Generation of the task data.
     pub generation: u32,
     /// The command of the workstation controller.
@@ -66,16 +88,13 @@ pub enum FormatError {
     Foreign,
     #[error("it is a journal in version {found} of the format, expected {VERSION}")]
     Version { found: u32 },
-    #[error("a journal of {LENGTH} bytes was expected, found {found}: the file was cut or extended")]
+    #[error("a journal of {} bytes was expected, found {found}: the file was cut or extended", length())]
     Length { found: usize },
     #[error("the head of the journal is damaged")]
     Head,
-    /// The journal was written by a program with other buffers.
-    #[error(
-        "its buffers have layout {found:016x}, this program {expected:016x}: use the program that wrote it{}",
-        by(.program)
-    )]
-    Layout { expected: u64, found: u64, program: String },
+    /// The program that wrote it has other buffers.
+    #[error("its buffers differ: {differences}; use the program that wrote it{}", by(.program))]
+    Layout { differences: String, program: String },
     #[error("the journal has no entry: the run was stopped before its first tick")]
     Empty,
     #[error(
@@ -94,26 +113,20 @@ fn by(program: &str) -> String {
 pub struct Contents {
     pub identity: Identity,
     pub newest: Entry, // the newest complete entry
-    pub torn: bool,    // a later entry was cut off while it was written
+    pub sequence: u64, // its number; 0 for the image of a log
+    pub end: RunEnd,
 }
 
 impl Contents {
-    /// Buffers for a start after tick `after`. After a torn entry, the command under way may have changed the cell.
+    /// Buffers for a start after tick `after`, as far as DOUBT keeps them.
     #[must_use]
     pub fn memory(&self, after: Tick) -> CommonMemory {
-        let kept = if self.torn { doubted(&self.newest.memory) } else { self.newest.memory };
-        resumed(&kept, after)
+        resumed(&doubted(&self.newest.memory, self.end), after)
     }
 }
 
 pub const PROGRAM: &str = "program"; // key of the identity: version of the program
-
-#[must_use]
-pub fn layout_of_entries() -> u64 {
-    let mut digest = Digest::new();
-    digest.add(layout::describe("entry", Entry::STRUCT).as_bytes());
-    digest.value()
-}
+pub const LOG: &str = "log"; // key of the identity: path of the log of the run
 
 /// Also returns the hash on which the hashes of its slots are based. A too long identity is cut at a line.
 #[must_use]
@@ -127,11 +140,13 @@ pub fn head(identity: &Identity) -> (Vec<u8>, u64) {
     }
     let length = u32::try_from(text.len()).unwrap_or(u32::MAX);
     let slots = u32::try_from(SLOTS).unwrap_or(u32::MAX);
+    let described = u32::try_from(packed().len()).unwrap_or(u32::MAX);
     let mut bytes = Vec::with_capacity(HEAD);
     bytes.extend(MAGIC);
     bytes.extend(VERSION.to_le_bytes());
     bytes.extend(slots.to_le_bytes());
     bytes.extend(layout_of_entries().to_le_bytes());
+    bytes.extend(described.to_le_bytes());
     bytes.extend(length.to_le_bytes());
     bytes.extend(text.as_bytes());
     bytes.resize(HEAD_HASH, 0);
@@ -144,7 +159,8 @@ pub fn head(identity: &Identity) -> (Vec<u8>, u64) {
 #[must_use]
 pub fn begun(identity: &Identity, first: Option<&Entry>) -> (Vec<u8>, u64) {
     let (mut bytes, hash) = head(identity);
-    bytes.resize(LENGTH, 0);
+    bytes.extend(packed());
+    bytes.resize(length(), 0);
     if let (Some(entry), Some(slot)) = (first, bytes.get_mut(place(FIRST)..)) {
         fill(slot, hash, FIRST, entry);
     }
@@ -154,7 +170,7 @@ pub fn begun(identity: &Identity, first: Option<&Entry>) -> (Vec<u8>, u64) {
 #[must_use]
 pub fn place(sequence: u64) -> usize {
     let slots = u64::try_from(SLOTS).unwrap_or(1);
-    HEAD + usize::try_from(sequence % slots).unwrap_or(0) * SLOT
+    *BEGIN + usize::try_from(sequence % slots).unwrap_or(0) * SLOT
 }
 
 /// Write an entry into the bytes of its slot. Does not allocate.
@@ -185,24 +201,29 @@ pub fn read(bytes: &[u8]) -> Result<Contents, FormatError> {
     if hash(0, head) != of_head {
         return Err(FormatError::Head);
     }
-    let length = number(IDENTITY - 4).and_then(|length| usize::try_from(length).ok()).unwrap_or_default();
-    let text = head.get(IDENTITY..).and_then(|rest| rest.get(..length)).ok_or(FormatError::Head)?;
+    let size = |at: usize| number(at).and_then(|size| usize::try_from(size).ok()).unwrap_or_default();
+    let text =
+        head.get(IDENTITY..).and_then(|rest| rest.get(..size(IDENTITY - 4))).ok_or(FormatError::Head)?;
     let text = std::str::from_utf8(text).map_err(|_| FormatError::Head)?;
     let identity: Identity = text
         .lines()
         .filter_map(|line| line.split_once(' '))
         .map(|(key, value)| (key.to_owned(), value.to_owned()))
         .collect();
-    let (expected, found) = (layout_of_entries(), long(16).unwrap_or_default());
-    if found != expected {
+    let layout = long(16).unwrap_or_default();
+    if layout != layout_of_entries() {
         let program = identity.get(PROGRAM).cloned().unwrap_or_default();
-        return Err(FormatError::Layout { expected, found, program });
+        let described = bytes.get(HEAD..).and_then(|rest| rest.get(..size(DESCRIBED)));
+        let text = described.and_then(|described| unpacked(described, layout));
+        let differences =
+            text.map_or_else(|| "their description is damaged".to_owned(), |text| differences(&text));
+        return Err(FormatError::Layout { differences, program });
     }
-    if bytes.len() != LENGTH {
+    if bytes.len() != length() {
         return Err(FormatError::Length { found: bytes.len() });
     }
-    let slots: Vec<Slot> =
-        bytes.get(HEAD..).unwrap_or_default().chunks(SLOT).map(|slot| look(of_head, slot)).collect();
+    let slots = bytes.get(*BEGIN..note_at()).unwrap_or_default().chunks(SLOT);
+    let slots: Vec<Slot> = slots.map(|slot| look(of_head, slot)).collect();
     let damaged = slots.iter().filter(|slot| matches!(slot, Slot::Damaged)).count();
     if damaged > 1 {
         return Err(FormatError::Damaged { damaged });
@@ -212,7 +233,7 @@ pub fn read(bytes: &[u8]) -> Result<Contents, FormatError> {
         return Err(if damaged == 0 { FormatError::Empty } else { FormatError::Damaged { damaged } });
     };
     // Entries are numbered without a gap, so only the one after the newest can be incomplete.
-    let at = |sequence: u64| slots.get((place(sequence) - HEAD) / SLOT);
+    let at = |sequence: u64| slots.get((place(sequence) - *BEGIN) / SLOT);
     let before =
         (1..).take(SLOTS - 1).filter_map(|back| newest.checked_sub(back)).filter(|number| *number > 0);
     let torn = matches!(at(newest.saturating_add(1)), Some(Slot::Damaged));
@@ -224,7 +245,19 @@ pub fn read(bytes: &[u8]) -> Result<Contents, FormatError> {
             return Err(FormatError::Gap { newest });
         }
     }
-    Ok(Contents { identity, newest: entry, torn })
+    let has_note = bytes.get(note_at()..).unwrap_or_default().iter().any(|byte| *byte != 0);
+    let end = match (torn, has_note) {
+        (true, _) => RunEnd::CutOff,
+        (false, true) => RunEnd::Trouble,
+        (false, false) => RunEnd::Reached,
+    };
+    Ok(Contents { identity, newest: entry, sequence: newest, end })
+}
+
+/// The note that the disk has not accepted the entry of this tick, for [`note_at`]. Zeros withdraw it.
+#[must_use]
+pub const fn note(tick: Tick) -> [u8; 8] {
+    tick.0.to_le_bytes()
 }
 
 const OF_CELL: [u8; 8] = *b"RCSJCEL\0"; // first bytes of every saved cell of a journal
@@ -305,6 +338,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::layout;
 
     fn identity() -> Identity {
         [(PROGRAM, "0.2.0"), ("job", "linkbar")].map(|(key, value)| (key.to_owned(), value.to_owned())).into()
@@ -328,7 +362,8 @@ mod tests {
     fn newest_entry_is_read() {
         for last in [1, 2, 7, 8, 9, 20, 1000] {
             let read = read(&journal(last)).expect("it is whole");
-            assert_eq!((read.newest, read.torn), (entry(100 + last), false));
+            assert_eq!((read.newest, read.end), (entry(100 + last), RunEnd::Reached));
+            assert_eq!(read.sequence, last);
             assert_eq!(read.identity, identity());
         }
     }
@@ -345,7 +380,7 @@ mod tests {
                 if bytes == before || bytes == after {
                     continue;
                 }
-                assert_eq!((read.newest, read.torn), (entry(100 + last), true), "{last}, {cut}");
+                assert_eq!((read.newest, read.end), (entry(100 + last), RunEnd::CutOff), "{last}, {cut}");
             }
         }
     }
@@ -356,11 +391,11 @@ mod tests {
         assert_eq!(read(b"hello"), Err(FormatError::Foreign));
         assert_eq!(read(&[]), Err(FormatError::Foreign));
         let whole = journal(9);
-        for cut in (0..LENGTH).step_by(BLOCK / 3) {
+        for cut in (0..length()).step_by(BLOCK / 3) {
             assert!(read(&whole[..cut]).is_err(), "{cut}");
         }
         let longer = [whole, vec![0]].concat();
-        assert_eq!(read(&longer), Err(FormatError::Length { found: LENGTH + 1 }));
+        assert_eq!(read(&longer), Err(FormatError::Length { found: length() + 1 }));
     }
 
     #[test]
@@ -371,7 +406,36 @@ mod tests {
         let at = place(4);
         fill(&mut bytes[at..at + SLOT], of_head, 4, &entry(900));
         let read = read(&bytes).expect("the others are whole");
-        assert_eq!((read.newest.tick, read.torn), (Tick(103), true));
+        assert_eq!((read.newest.tick, read.end), (Tick(103), RunEnd::CutOff));
+    }
+
+    #[test]
+    fn note_of_trouble_leads_to_doubt() {
+        let mut bytes = journal(9);
+        bytes[note_at()..note_at() + 8].copy_from_slice(&note(Tick(110)));
+        assert_eq!(read(&bytes).map(|read| (read.newest.tick, read.end)), Ok((Tick(109), RunEnd::Trouble)));
+        bytes[note_at()..].fill(0);
+        assert_eq!(read(&bytes).map(|read| read.end), Ok(RunEnd::Reached));
+    }
+
+    #[test]
+    fn journal_of_another_layout_is_refused_with_its_fields() {
+        let described = layout::describe("entry", Entry::STRUCT).replace(" line\n", " lane\n");
+        let mut digest = Digest::new();
+        digest.add(described.as_bytes());
+        let packed = zstd::bulk::compress(described.as_bytes(), 3).unwrap();
+        let mut bytes = head(&identity()).0;
+        bytes[16..24].copy_from_slice(&digest.value().to_le_bytes());
+        bytes[DESCRIBED..DESCRIBED + 4].copy_from_slice(&u32::try_from(packed.len()).unwrap().to_le_bytes());
+        let of_head = hash(0, &bytes[..HEAD_HASH]);
+        bytes[HEAD_HASH..].copy_from_slice(&of_head.to_le_bytes());
+        bytes.extend(packed);
+        let refused = read(&bytes).unwrap_err().to_string();
+        let (there, here) = ("lane (u32 at byte 17) is only there", "line (u32 at byte 17) is only here");
+        assert!(refused.contains(there) && refused.contains(here), "{refused}");
+        assert!(refused.ends_with("use the program that wrote it (version 0.2.0)"), "{refused}");
+        bytes.truncate(HEAD + 20);
+        assert!(read(&bytes).unwrap_err().to_string().contains("their description is damaged"));
     }
 
     #[test]
@@ -393,7 +457,7 @@ mod tests {
         #[test]
         fn changed_bytes_are_never_silently_older(
             last in 1_u64..20,
-            changes in proptest::collection::vec((0..LENGTH, 1_u8..), 1..4),
+            changes in proptest::collection::vec((0..length(), 1_u8..), 1..4),
         ) {
             let mut bytes = journal(last);
             for (at, by) in changes {
@@ -401,7 +465,8 @@ mod tests {
             }
             if let Ok(read) = read(&bytes) {
                 let tick = read.newest.tick.0;
-                prop_assert!(tick == 100 + last || read.torn && tick + 1 == 100 + last, "{} of {}", tick, last);
+                let is_torn = read.end == RunEnd::CutOff;
+                prop_assert!(tick == 100 + last || is_torn && tick + 1 == 100 + last, "{} of {}", tick, last);
                 prop_assert_eq!(read.newest, entry(tick));
             }
         }

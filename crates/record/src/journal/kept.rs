@@ -5,7 +5,7 @@
 use interfaces::{
     CommonMemory, EmoveOutputs, GripOutputs, Header, JawsOutputs, PedestalOutputs, PrimOutputs, ProcessId,
     QuickChangeOutputs, SubtaskOutputs, T3iOutputs, TableOutputs,
-    emove::{CalibratedAt, EmoveStatus, Estimates, Seat},
+    emove::{CalibratedAt, EmoveStatus},
     grip::GripStatus,
     pedestal::{PedestalStatus, TableStatus},
     subtask::SubtaskStatus,
@@ -88,24 +88,9 @@ pub fn resumed(kept: &CommonMemory, tick: Tick) -> CommonMemory {
     memory
 }
 
-/// Kept buffers after which the command under way may have changed the cell. The held object, the robot's place and
-/// path, and the part in the pedestal's hand are then not known.
-#[must_use]
-pub fn doubted(kept: &CommonMemory) -> CommonMemory {
-    let mut memory = *kept;
-    let Estimates { exchange, drum, .. } = kept.emove.estimates;
-    // In a holster or at the drum the estimate forbids other motions, so it stays.
-    memory.emove.estimates = Estimates { seat: Seat::NotKnown, exchange, drum, ..Estimates::ZERO };
-    memory.task.confirmed = None;
-    (memory.task.updates.taking, memory.task.updates.carried) = (None, None);
-    memory.subtask.regrip = None;
-    memory.pedestal.status.gripped = false;
-    memory
-}
-
 #[cfg(test)]
 mod tests {
-    use interfaces::{Decided, hws::Confirmed, operator::Support};
+    use interfaces::Decided;
 
     use super::*;
 
@@ -141,16 +126,5 @@ mod tests {
             assert_eq!(memory.header(*process).stamp, Tick(40));
             assert_ne!(memory.command_number(*process), Some(0), "{process}");
         }
-    }
-
-    #[test]
-    fn doubt_clears_what_the_command_may_have_changed() {
-        let mut memory = CommonMemory::default();
-        memory.emove.estimates.empty = true;
-        memory.pedestal.status.gripped = true;
-        memory.task.confirmed = Some(Confirmed { by: Support::Clamped, at: None });
-        let doubted = doubted(&memory);
-        assert!(!doubted.emove.estimates.empty && !doubted.pedestal.status.gripped);
-        assert_eq!((doubted.emove.estimates.seat, doubted.task.confirmed), (Seat::NotKnown, None));
     }
 }

@@ -10,8 +10,12 @@
 //! does not affect it. After a failed write the next entry is tried, and [`Journal::trouble`] reports it; the run
 //! continues.
 
+mod described;
+mod doubt;
 mod format;
 mod kept;
+mod logged;
+mod witness;
 
 use std::{
     fs::{self, File, OpenOptions, TryLockError},
@@ -27,11 +31,15 @@ use os_io::{files, replace};
 use rcs_core::tick::Tick;
 
 pub use self::{
+    described::compared,
+    doubt::{DOUBT, Estimate, Evidence, Fate, RunEnd, asks_for_line, doubt, doubted},
     format::{
-        Contents, Entry, FIRST, FormatError, Identity, LENGTH, MAGIC, PROGRAM, SLOT, SLOTS, begun, cell,
-        fill, place, read, read_cell,
+        Contents, Entry, FIRST, FormatError, Identity, LOG, MAGIC, PROGRAM, SLOT, SLOTS, begun, cell, fill,
+        length, note_at, place, read, read_cell,
     },
-    kept::{doubted, kept, knowledge, resumed},
+    kept::{kept, knowledge, resumed},
+    logged::{LoggedError, is_log, logged},
+    witness::{Witnesses, judged},
 };
 
 pub const HEARTBEAT: u64 = 25; // ticks after which an entry is due although nothing has changed: one second
@@ -57,7 +65,7 @@ pub enum JournalError {
 }
 
 pub fn open(path: &Path) -> Result<Contents, JournalError> {
-    let limit = u64::try_from(LENGTH).unwrap_or(u64::MAX).saturating_mul(2);
+    let limit = u64::try_from(length()).unwrap_or(u64::MAX).saturating_mul(2);
     let bytes =
         files::read(path, limit).map_err(|source| JournalError::Read { path: path.to_owned(), source })?;
     read(&bytes).map_err(|source| JournalError::Format { path: path.to_owned(), source })
@@ -88,8 +96,8 @@ struct State {
 
 impl Journal {
     /// Begin a journal, with `first` as its first entry. An earlier one at this path is replaced as a whole. If its
-    /// run has not ended, and `first` does not continue it, it is kept under another name ([`kept_before`]). Fails if
-    /// the file belongs to another run, is not a journal, or cannot be created.
+    /// run has not ended, and `first` does not continue it, or if it cannot be read, it is kept under another name
+    /// ([`kept_before`]). Fails if the file belongs to another run, is no journal, or cannot be created.
     pub fn start(path: &Path, identity: &Identity, first: Option<&Entry>) -> Result<Self, JournalError> {
         let failed = |source| JournalError::Create { path: path.to_owned(), source };
         if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
@@ -98,9 +106,7 @@ impl Journal {
         // The lock of the earlier file is held until the new one is in its place.
         let _earlier = claim(path)?;
         let (bytes, of_head) = begun(identity, first);
-        if first.is_none() {
-            set_aside(path).map_err(failed)?;
-        }
+        set_aside(path, first.is_some()).map_err(failed)?;
         replace::replace(path, &bytes).map_err(failed)?;
         let file = OpenOptions::new().write(true).open(path).map_err(failed)?;
         lock(&file, path)?;
@@ -121,6 +127,7 @@ impl Journal {
             of_head,
             sequence: if first.is_some() { FIRST } else { 0 },
             slot: vec![0; SLOT],
+            has_note: false,
         };
         let of_thread = Arc::clone(&shared);
         let thread = thread::Builder::new()
@@ -147,13 +154,9 @@ impl Journal {
     pub fn tick(&mut self, entry: &Entry) {
         let known = knowledge(&entry.memory);
         let (before, known_before) = &*self.last;
-        let beside = |entry: &Entry| {
-            let Entry { over, line, begun, delayed, generation, hws, .. } = *entry;
-            (over, line, begun, delayed, generation, hws)
-        };
         let is_due = !self.has_last
             || entry.tick.since(before.tick) >= HEARTBEAT
-            || beside(entry) != beside(before)
+            || entry.beside() != before.beside()
             || known != *known_before;
         if !is_due {
             return;
@@ -236,12 +239,19 @@ pub fn kept_before(path: &Path) -> PathBuf {
     path.with_added_extension("before")
 }
 
-/// Keep an earlier journal from which a run can be resumed, with its cell. Otherwise remove the cell.
-fn set_aside(path: &Path) -> io::Result<()> {
+/// Keep an earlier journal from which a run can be resumed, with its cell. Otherwise remove the cell. A run that is
+/// resumed keeps only a journal that cannot be read.
+fn set_aside(path: &Path, is_resumed: bool) -> io::Result<()> {
     let found = |result: io::Result<()>| match result {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         _ => Ok(()),
     };
+    if is_resumed {
+        return match open(path) {
+            Err(JournalError::Format { .. }) => fs::rename(path, kept_before(path)),
+            _ => Ok(()),
+        };
+    }
     if open(path).is_ok_and(|contents| !contents.newest.over) {
         let before = kept_before(path);
         found(fs::rename(cell_beside(path), cell_beside(&before)))?;
@@ -284,6 +294,7 @@ struct Writer {
     of_head: u64,
     sequence: u64, // number of the last entry on the disk
     slot: Vec<u8>,
+    has_note: bool, // the journal notes that an entry was not accepted
 }
 
 impl Writer {
@@ -301,12 +312,27 @@ impl Writer {
                 self.slot.fill(0);
                 fill(&mut self.slot, self.of_head, self.sequence.saturating_add(1), &state.entry);
             }
+            let tick = state.entry.tick;
             drop(state);
             let written = if is_new { self.write() } else { Ok(()) };
+            if is_new {
+                self.note(tick, written.is_ok());
+            }
             let saved = cell.map_or(Ok(()), |cell| replace::replace(&cell_beside(&self.path), &cell));
             let trouble = written.and(saved).err().map(|error| error.to_string());
             state = locked(shared);
             state.trouble = trouble;
+        }
+    }
+
+    /// Note the first entry that the disk does not accept; withdraw the note after an accepted one. A disk that accepts
+    /// neither keeps no trace of it.
+    fn note(&mut self, tick: Tick, accepted: bool) {
+        if self.has_note == accepted {
+            let note = if accepted { [0; 8] } else { format::note(tick) };
+            let at = u64::try_from(note_at()).unwrap_or(u64::MAX);
+            let noted = self.file.write_all_at(&note, at).and_then(|()| self.file.sync_data());
+            self.has_note = if noted.is_ok() { !accepted } else { self.has_note };
         }
     }
 
@@ -325,6 +351,17 @@ impl Writer {
 }
 
 impl Entry {
+    /// The knowledge that is not in the buffers.
+    fn beside(&self) -> impl PartialEq + use<> {
+        let Self { over, line, begun, delayed, asks_line, generation, hws, .. } = *self;
+        (over, line, begun, delayed, asks_line, generation, hws)
+    }
+
+    /// True if another entry has the same knowledge.
+    fn knows_as(&self, other: &Self) -> bool {
+        self.beside() == other.beside() && knowledge(&self.memory) == knowledge(&other.memory)
+    }
+
     /// The time of the entry for a person: its tick, and its age if it was written in real time.
     #[must_use]
     pub fn age(&self, now: u64) -> String {
@@ -382,7 +419,7 @@ mod tests {
             }
             assert_eq!(journal.finish(Some(&Entry { over: true, ..entry(last) })), None);
             let read = open(&path).unwrap();
-            assert!(read.newest.tick == Tick(last) && read.newest.over && !read.torn);
+            assert!(read.newest.tick == Tick(last) && read.newest.over && read.end == RunEnd::Reached);
         }
     }
 
@@ -414,6 +451,44 @@ mod tests {
         }
         let trouble = journal.finish(Some(&entry(200))).expect("the file is gone");
         assert!(trouble.contains("was removed during the run"), "{trouble}");
+    }
+
+    #[test]
+    fn unreadable_journal_of_a_resumed_run_is_kept() {
+        let (_directory, path, journal) = started(Some(&entry(70)));
+        assert_eq!(journal.finish(None), None);
+        let mut bytes = fs::read(&path).unwrap();
+        bytes[100] ^= 1;
+        fs::write(&path, &bytes).unwrap();
+        drop(Journal::start(&path, &Identity::new(), Some(&entry(60))).unwrap());
+        assert_eq!(open(&path).unwrap().newest, entry(60));
+        assert_eq!(fs::read(kept_before(&path)).unwrap(), bytes);
+    }
+
+    #[test]
+    fn entry_that_is_not_accepted_is_noted_until_the_next_one_is() {
+        let (_directory, path, journal) = started(Some(&entry(70)));
+        assert_eq!(journal.finish(None), None);
+        let file = OpenOptions::new().write(true).open(&path).unwrap();
+        let (_, of_head) = begun(&Identity::new(), None);
+        let mut writer = Writer {
+            file,
+            path: path.clone(),
+            identity: (0, 0),
+            of_head,
+            sequence: FIRST,
+            slot: vec![0; SLOT],
+            has_note: false,
+        };
+        // The file is another one than the writer expects, so the entry is not written.
+        let accepted = writer.write().is_ok();
+        writer.note(Tick(71), accepted);
+        assert_eq!(
+            open(&path).map(|read| (read.newest.tick, read.end)).unwrap(),
+            (Tick(70), RunEnd::Trouble)
+        );
+        writer.note(Tick(72), true);
+        assert_eq!(open(&path).unwrap().end, RunEnd::Reached);
     }
 
     #[test]

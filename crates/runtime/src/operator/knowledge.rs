@@ -19,7 +19,7 @@ pub fn read(words: &[&str]) -> Result<Write, String> {
         ["held", "nothing"] => written::read(&[held, "NONE"]),
         ["held", object, grip] => written::read(&[held, object, grip]),
         _ => Err(format!(
-            "resume, resume held OBJECT GRIP or resume held nothing was expected; found resume {}",
+            "resume, resume held OBJECT GRIP, resume held nothing or resume line NUMBER was expected; found resume {}",
             words.join(" ")
         )),
     }

@@ -269,7 +269,15 @@ impl Operator {
                     .show(&point, &inputs)
                     .ok_or_else(|| format!("the mapping has no point {point}"))
             }
-            Request::Knowledge => Ok(knowledge::state(around.memory)),
+            Request::Knowledge => {
+                let asks = around.neighbours.job().filter(|job| job.asks_line());
+                let line =
+                    asks.map_or("", |_| "; line of the job: not known: name it with `resume line NUMBER`");
+                Ok(knowledge::state(around.memory) + line)
+            }
+            Request::NameLine(line) => {
+                job(around)?.name_line(line).map(str::to_owned).map_err(|error| error.to_string())
+            }
             Request::Release(device) => {
                 let field = field(around)?;
                 if !field.release(&device) {

@@ -24,6 +24,7 @@ pub enum Request {
     Field,
     Point(String),
     Knowledge,
+    NameLine(usize), // the present line of a resumed job
     Release(String),
     MakeSafe(String), // make the outputs of a device safe until it is released
     Stop,
@@ -123,6 +124,10 @@ impl Request {
                 )),
             };
         }
+        if let ["resume", "line", line] = each[..] {
+            let number = line.parse().map(Self::NameLine);
+            return number.map_err(|_| format!("resume line NUMBER was expected; found {words}"));
+        }
         if let Some(entry) = Entry::read(&each) {
             return entry.map(Self::Terminal);
         }
@@ -173,6 +178,7 @@ impl Request {
             | Self::Go
             | Self::GoOn
             | Self::Skip
+            | Self::NameLine(_)
             | Self::Release(_)
             | Self::MakeSafe(_)
             | Self::Command(..)

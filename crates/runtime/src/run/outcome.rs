@@ -77,6 +77,7 @@ impl Run {
             ticks: step.ticks,
         });
         RunResult {
+            journal_trouble: self.journal_trouble.take(),
             job: self.job.name.clone(),
             ending: ending.word(),
             data: self.data.clone(),
@@ -162,9 +163,9 @@ impl Run {
         let over = matches!(ending, Ending::Finished);
         let entry = Entry { over, ..resume::entry(&self.closed, self.neighbours.job(), clock) };
         let path = journal.path().to_owned();
-        if let Some(why) = journal.finish(Some(&entry)) {
-            self.observer.message(&format!("the journal {} is incomplete: {why}", path.display()));
-        }
+        self.journal_trouble = journal
+            .finish(Some(&entry))
+            .map(|why| format!("the journal {} is incomplete: {why}", path.display()));
     }
 
     fn items(&mut self) -> Vec<ItemResult> {

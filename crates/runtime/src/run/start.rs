@@ -18,6 +18,7 @@ use super::Run;
 use crate::{
     boards::Controller,
     config::{Boards, ClockKind, OperatorAccess, RobotKind, RunConfig},
+    contradiction::Contradictions,
     error::StartError,
     event::Event,
     load::Loads,
@@ -161,6 +162,7 @@ impl Run {
         if let Some(resumed) = &resumed {
             resumed.start(&mut closed);
         }
+        let contradictions = resumed.as_ref().map(|_| Contradictions::of(closed.memory()));
         let fresh = resumed.as_ref().map(|resumed| Event::Resumed(resumed.to_string()));
         if let Some(event) = &fresh {
             observer.message(&event.to_string());
@@ -214,6 +216,8 @@ impl Run {
             waits: None,
             fresh: fresh.into_iter().collect(),
             journal,
+            journal_trouble: None,
+            contradictions,
             events: Events::default(),
             rest: RestWatch::default(),
             ramp: None,

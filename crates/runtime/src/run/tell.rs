@@ -7,7 +7,7 @@ use closed_loop::{
     field::Field,
 };
 use interfaces::CommonMemory;
-use neighbours::data_system::DataSystem;
+use neighbours::{data_system::DataSystem, workstation::player::Hwsc};
 use plant::{CellEvent, t3::RobotEvent};
 use rcs_core::tick::Tick;
 use record::journal::{self, HEARTBEAT};
@@ -158,7 +158,27 @@ impl Run {
             journal.save_cell(journal::cell(&entry, &saved));
         }
         if let Some(trouble) = journal.trouble() {
+            if let Some(announced) = self.announced.as_ref().filter(|_| self.ramp.is_none()) {
+                let not_written = |why| format!("runs; its journal is not written: {why}");
+                announced.say(&trouble.as_ref().map_or_else(|| "runs".to_owned(), not_written));
+            }
+            self.journal_trouble.clone_from(&trouble);
             let event = Event::Journal(trouble);
+            self.observer.message(&format!("tick {tick}: {event}"));
+            self.log_event(tick.next(), &event);
+            self.events.push(tick, &event);
+        }
+    }
+
+    /// Until the job of a resumed run continues, report each estimate that the sensors contradict.
+    pub(super) fn tell_contradictions(&mut self, tick: Tick) {
+        let Some(contradictions) = &mut self.contradictions else { return };
+        if !self.neighbours.job().is_some_and(Hwsc::waits_idle) {
+            self.contradictions = None;
+            return;
+        }
+        for text in contradictions.look(self.closed.memory()) {
+            let event = Event::Resumed(text);
             self.observer.message(&format!("tick {tick}: {event}"));
             self.log_event(tick.next(), &event);
             self.events.push(tick, &event);

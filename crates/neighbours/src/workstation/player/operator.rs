@@ -30,6 +30,7 @@ pub(super) struct Intervention {
     attended: bool,
     state: State,
     news: Option<WaitReason>, // until it is reported
+    asks_line: bool,          // the present line of a resumed job is not known
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +38,8 @@ pub enum WaitReason {
     Commanded,
     Asked,   // by the operator
     Resumed, // the run has started with the knowledge of an earlier one
+    /// The same, and the line of the job is not known; the last recorded one.
+    ResumedWithoutLine(u32),
     Failed(JobFailure),
 }
 
@@ -48,6 +51,11 @@ impl fmt::Display for WaitReason {
             Self::Resumed => f.write_str(
                 "the run is resumed: check what the controller knows, then `job go` sends PAUSE and the interrupted \
                  command",
+            ),
+            Self::ResumedWithoutLine(last) => write!(
+                f,
+                "the run is resumed, and the line of the job is not known; the last recorded one is {last}: check what \
+                 the controller knows, name the line with `resume line N`, then `job go` sends PAUSE and this line"
             ),
             Self::Failed(failure) => {
                 write!(f, "{failure}: the job waits for `job go`")?;
@@ -63,6 +71,7 @@ pub struct PlaceInJob {
     pub is_begun: bool, // false if the present line has not begun
     /// Lines `** after` before the present one whose actions have not started, one bit each, the nearest first.
     pub delayed: u16,
+    pub is_asked: bool, // the line is not known: a person must name it
 }
 
 #[derive(Clone, Debug, Default)]
@@ -89,6 +98,12 @@ pub enum OperatorError {
     NoLine, // none left to skip
     #[error("the job has ended")]
     Ended,
+    #[error("the line of the job is not known, the last recorded one is {0}: name it with `resume line N`")]
+    LineNotKnown(usize),
+    #[error("the job has lines 1 to {last}; found {found}")]
+    NoSuchLine { found: usize, last: usize },
+    #[error("the line of the job is known: `job go` repeats it, `job skip` continues after it")]
+    LineKnown,
 }
 
 impl Hwsc {
@@ -109,6 +124,7 @@ impl Hwsc {
             line: u32::try_from(self.current).unwrap_or(u32::MAX),
             is_begun: self.began.is_some() && !self.waits_before_line(),
             delayed: delayed.fold(0, |all, (place, _)| all | 1 << place),
+            is_asked: self.intervention.asks_line,
         }
     }
 
@@ -126,8 +142,37 @@ impl Hwsc {
         self.later.reverse();
         let before_line = !place.is_begun;
         self.intervention.state = State::Waits { failure: None, before_line, command: None };
-        self.intervention.news = Some(WaitReason::Resumed);
+        self.intervention.asks_line = place.is_asked;
+        self.intervention.news = Some(if place.is_asked {
+            WaitReason::ResumedWithoutLine(place.line)
+        } else {
+            WaitReason::Resumed
+        });
         self
+    }
+
+    /// True if a person must name the line of a resumed job before it continues.
+    #[must_use]
+    pub const fn asks_line(&self) -> bool {
+        self.intervention.asks_line
+    }
+
+    /// An operator names the present line of a resumed job, with which it then continues. Returns its text.
+    pub fn name_line(&mut self, line: usize) -> Result<&str, OperatorError> {
+        self.not_ended()?;
+        let State::Waits { before_line, .. } = &mut self.intervention.state else {
+            return Err(OperatorError::Plays);
+        };
+        if !self.intervention.asks_line {
+            return Err(OperatorError::LineKnown);
+        }
+        let last = self.steps.len();
+        let named = line.checked_sub(1).and_then(|at| self.steps.get(at));
+        let named = named.ok_or(OperatorError::NoSuchLine { found: line, last })?;
+        *before_line = true;
+        (self.current, self.began, self.intervention.asks_line) = (line, None, false);
+        self.later.clear();
+        Ok(&named.text)
     }
 
     /// When the operator disconnects, a job that waits because of a failed line ends with that failure.
@@ -187,6 +232,7 @@ impl Hwsc {
         };
         let (command, has_failed, before_line) = (*command, failure.is_some(), *before_line);
         self.replace_pause(tick, command)?;
+        self.intervention.asks_line = false;
         if !has_failed && !before_line && !self.is_commanding() {
             self.finish(Outcome::Interrupted);
         }
@@ -356,6 +402,9 @@ impl Hwsc {
             }
             return Err(OperatorError::Plays);
         };
+        if self.intervention.asks_line {
+            return Err(OperatorError::LineNotKnown(self.current));
+        }
         let (command, failed, before_line) = (*command, failure.is_some(), *before_line);
         let is_last = self.current > self.steps.len();
         if skips && is_last {

@@ -289,6 +289,31 @@ fn resumed_job_waits_and_repeats_its_line() {
 }
 
 #[test]
+fn resumed_job_without_line_continues_with_a_named_line() {
+    let place = PlaceInJob { line: 1, is_begun: true, is_asked: true, ..PlaceInJob::default() };
+    let mut stage = Stage::commands();
+    stage.hwsc = Hwsc::new(stage.hwsc.lines().to_vec(), 100).resumed_at(place, Tick(40));
+    stage.hwsc.attend(true);
+    stage.tick = 40;
+    stage.step();
+    assert_eq!(stage.hwsc.operator_news(), Some(WaitReason::ResumedWithoutLine(1)));
+    let tick = Tick(stage.tick);
+    assert_eq!(stage.hwsc.go_on(tick), Err(OperatorError::LineNotKnown(1)));
+    assert_eq!(stage.hwsc.skip(tick), Err(OperatorError::LineNotKnown(1)));
+    for line in [0, 99] {
+        let last = stage.hwsc.lines().len();
+        assert_eq!(stage.hwsc.name_line(line), Err(OperatorError::NoSuchLine { found: line, last }));
+    }
+    assert!(stage.hwsc.place_in_job().is_asked);
+    assert!(stage.hwsc.name_line(2).is_ok_and(|text| text.contains("ACQUIRE")));
+    assert_eq!(stage.hwsc.name_line(1), Err(OperatorError::LineKnown));
+    assert_eq!(stage.hwsc.place_in_job(), PlaceInJob { line: 2, ..PlaceInJob::default() });
+    stage.go_on();
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE ACQUIRE");
+}
+
+#[test]
 fn resumed_job_does_not_repeat_a_finished_line() {
     let mut before = Stage::commands();
     before.hwsc.wait_for_operator().unwrap();
