@@ -42,11 +42,39 @@ pub enum Kind {
     Held(ProcessId), // a switch on the joystick box holds a process, and then releases it
     Restart(ProcessId),
     Lost(ProcessId),               // a process writes nothing from now on
-    Power,                         // the controller loses its power, and everything but its journal
+    Power(Loss),                   // the controller loses its power, and everything but its journal
     Cut,                           // the cable to the robot controller is cut
     Estop,                         // emergency stop, and the start-up at the panel
     Fault(String, Arc<FaultFile>), // the faults of a file for [`FAULT`] ticks, with the name of the file
     Disturbed(Disturbance),        // a person moves the robot aside, or changes the parts in the cell
+}
+
+/// What fails in a loss of power, in addition to the controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loss {
+    Controller, // the controller alone: the arm stands, the air holds
+    Arm,        // the hydraulics of the robot: the arm sinks
+    Air,        // the supply of air
+}
+
+impl Loss {
+    const NAMED: [(&str, Self); 2] = [("arm", Self::Arm), ("air", Self::Air)];
+
+    fn script(self) -> Vec<ScriptStep> {
+        let (mut off, mut on) = (vec![ScriptStep::PowerOff], vec![ScriptStep::PowerOn]);
+        match self {
+            Self::Controller => {}
+            Self::Arm => {
+                off.push(ScriptStep::key(Key::Press(EStop::ControlPanel)));
+                on.push(ScriptStep::key(Key::Release(EStop::ControlPanel)));
+            }
+            Self::Air => off.push(ScriptStep::AirLost(OUTAGE)),
+        }
+        let written = [ScriptStep::Journal, ScriptStep::Wait(LATE_ENTRY)];
+        let begin = [ScriptStep::Wait(RESTART), ScriptStep::Enter, ScriptStep::StartUp];
+        let outage = [ScriptStep::Wait(OUTAGE)];
+        written.into_iter().chain(off).chain(outage).chain(on).chain(begin).collect()
+    }
 }
 
 /// Kinds without a parameter, with their names.
@@ -63,7 +91,7 @@ const PLAIN: [(&str, Kind); 14] = [
     ("nudge", Kind::Nudge),
     ("away", Kind::Away),
     ("estop", Kind::Estop),
-    ("power", Kind::Power),
+    ("power", Kind::Power(Loss::Controller)),
     ("cut", Kind::Cut),
 ];
 const OF_PROCESS: [&str; 3] = ["held", "restart", "lost"]; // interruptions of a process, `WORD:PROCESS`
@@ -75,6 +103,10 @@ impl fmt::Display for Kind {
             Self::Restart(process) => write!(f, "restart:{}", word_of(*process)),
             Self::Lost(process) => write!(f, "lost:{}", word_of(*process)),
             Self::Fault(name, _) => write!(f, "fault:{name}"),
+            Self::Power(loss @ (Loss::Arm | Loss::Air)) => {
+                let (name, _) = Loss::NAMED[usize::from(*loss == Loss::Air)];
+                write!(f, "power:{name}")
+            }
             Self::Disturbed(disturbance) => disturbance.fmt(f),
             plain => f.write_str(PLAIN.iter().find(|(_, kind)| kind == plain).map_or("", |(name, _)| name)),
         }
@@ -108,6 +140,10 @@ impl Kind {
             Some(("held", name)) => process(name)
                 .filter(|process| Stepped::ALL.iter().any(|one| one.process() == *process))
                 .map(|process| vec![Self::Held(process)]),
+            Some(("power", name)) => {
+                let loss = Loss::NAMED.iter().find(|(known, _)| *known == name);
+                loss.map(|(_, loss)| vec![Self::Power(*loss)])
+            }
             Some(("restart", name)) => process(name).map(|process| vec![Self::Restart(process)]),
             Some(("lost", name)) => process(name).map(|process| vec![Self::Lost(process)]),
             Some((word, _)) if disturbance::WORDS.contains(&word) => {
@@ -193,16 +229,7 @@ impl Kind {
             Self::Restart(process) => vec![ScriptStep::Restart(*process)],
             Self::Lost(process) => vec![ScriptStep::Lose(*process)],
             Self::Cut => vec![ScriptStep::Cut],
-            Self::Power => vec![
-                ScriptStep::Journal,
-                ScriptStep::Wait(LATE_ENTRY),
-                ScriptStep::PowerOff,
-                ScriptStep::Wait(OUTAGE),
-                ScriptStep::PowerOn,
-                ScriptStep::Wait(RESTART),
-                ScriptStep::Enter,
-                ScriptStep::StartUp,
-            ],
+            Self::Power(loss) => loss.script(),
             Self::Estop => {
                 let mut steps = vec![ScriptStep::key(Key::Press(EStop::Pedestal)), ScriptStep::Wait(STOPPED)];
                 steps.push(ScriptStep::key(Key::Release(EStop::Pedestal)));
@@ -233,7 +260,7 @@ fn words() -> String {
     let plain = PLAIN.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
     let processes = ProcessId::ALL.iter().map(|process| word_of(*process)).collect::<Vec<_>>().join(", ");
     format!(
-        "{plain}, held[:PROCESS], restart[:PROCESS], lost[:PROCESS], fault[:FILE], jog:X:Y:Z, take:PART, \
+        "{plain}, held[:PROCESS], restart[:PROCESS], lost[:PROCESS], power[:arm|:air], fault[:FILE], jog:X:Y:Z, take:PART, \
          move:PART:X:Y, swap:PART:KIND, add:KIND:PLACE:SECTOR or all; processes are {processes}"
     )
 }

@@ -11,12 +11,12 @@
 
 use std::fmt;
 
-use interfaces::{HwsCommand, hws::HwsReport};
+use interfaces::{HwsCommand, Reason, hws::HwsReport};
 use neighbours::workstation::{
     Status, TaskState,
     player::{Workstation as _, pause},
 };
-use rcs_core::tick::Tick;
+use rcs_core::{name::Name16, tick::Tick};
 use taskdata::load::job::{JobLine, Step, Workstation as Action};
 
 use closed_loop::{Commander, workstation::SimulatedWorkstation};
@@ -91,11 +91,13 @@ pub struct Operator<'f> {
     recovery: Recovery,
     tries: u32,
     tried: u32,
+    remedied: bool,            // the remedy of the reason was applied to the present line
     second_pause: Option<u64>, // ticks from the first repeated command to its PAUSE; `None` for no PAUSE
     later: Vec<Later>,
     delayed: Vec<(u64, Action, String)>,
     ended: Vec<Ended>,
     reason: String,
+    has_remedied: bool, // a remedy was applied since the start
 }
 
 impl<'f> Operator<'f> {
@@ -115,11 +117,13 @@ impl<'f> Operator<'f> {
             recovery: Recovery::Pause,
             tries,
             tried: 0,
+            remedied: false,
             second_pause: None,
             later: Vec::new(),
             delayed: Vec::new(),
             ended: Vec::new(),
             reason: String::new(),
+            has_remedied: false,
         };
         operator.doing = if operator.command_at(current).is_some() { Doing::Command } else { Doing::Action };
         operator
@@ -133,7 +137,7 @@ impl<'f> Operator<'f> {
 
     /// Record an interruption: all tries are available again. A second PAUSE follows after `second_pause` ticks.
     pub const fn interrupt(&mut self, second_pause: Option<u64>) {
-        (self.tried, self.has_finished) = (0, false);
+        (self.tried, self.has_finished, self.remedied) = (0, false, false);
         self.second_pause = second_pause;
     }
 
@@ -146,6 +150,11 @@ impl<'f> Operator<'f> {
     pub fn retry(&mut self) {
         self.tried = 0;
         self.doing = Doing::Failed;
+    }
+
+    #[must_use]
+    pub const fn has_remedied(&self) -> bool {
+        self.has_remedied
     }
 
     #[must_use]
@@ -212,7 +221,8 @@ impl<'f> Operator<'f> {
         let outgoing = self.outgoing.map(|command| HwsCommand { number: since(command.number), ..command });
         let place = (self.current, &self.doing, began, since(self.number), outgoing);
         let replaced = (self.replaced.map(since), self.has_finished, self.is_waiting);
-        let tries = (self.recovery, self.tries, self.tried, self.second_pause, &self.reason);
+        let tried = (self.tried, self.remedied);
+        let tries = (self.recovery, self.tries, tried, self.second_pause, &self.reason);
         (place, replaced, tries, &self.later, &self.delayed)
     }
 
@@ -293,7 +303,13 @@ impl<'f> Operator<'f> {
 
     fn failed(&mut self, tick: Tick, reason: String) {
         if self.tried >= self.tries {
-            self.strand(reason);
+            match self.remedy(&reason) {
+                Some(command) => {
+                    (self.tried, self.remedied, self.has_remedied) = (0, true, true);
+                    self.interject(tick, &command, Then::Recovery);
+                }
+                None => self.strand(reason),
+            }
         } else if self.is_waiting {
             self.reason = reason;
             self.doing = Doing::Failed;
@@ -302,9 +318,23 @@ impl<'f> Operator<'f> {
         }
     }
 
+    /// The command that the remedy of a reason names (docs/reasons.md), once per line of the job.
+    fn remedy(&self, reason: &str) -> Option<HwsCommand> {
+        let insert = self.command_at(self.current).filter(|_| !self.remedied)?;
+        let is_meant = reason == Reason::ForceUncalibrated.text();
+        is_meant.then(|| HwsCommand {
+            command: Name16::clipped("REMOVE-TOOL"),
+            destination: None,
+            destination_sector: None,
+            end_at: insert.destination,
+            end_at_sector: insert.destination_sector,
+            ..insert
+        })
+    }
+
     fn next(&mut self, tick: Tick, workstation: &mut SimulatedWorkstation) {
         self.current += 1;
-        (self.tried, self.second_pause, self.has_finished) = (0, None, false);
+        (self.tried, self.second_pause, self.has_finished, self.remedied) = (0, None, false, false);
         self.began = tick;
         let lines = self.lines;
         let Some(line) = lines.get(self.current - 1) else {

@@ -7,7 +7,7 @@ use interfaces::device::{KNOB_FULL, joystick_frame};
 use levels::ladder::ProcessId;
 use plant::{
     BoxAction, BoxButton, Key, WorkstationAction,
-    fault::{FaultPlan, When, text::FaultFile},
+    fault::{self, Fault, FaultPlan, When, text::FaultFile},
     t3::Stage,
 };
 use rcs_core::tick::Tick;
@@ -75,6 +75,7 @@ pub enum ScriptStep {
     Journal, // the journal writes its last entry
     PowerOff,
     PowerOn,
+    AirLost(u64), // the supply of air fails for a number of ticks
     Answer(FaultKind),
     Faults(Arc<FaultFile>),
     Enter,        // ENTER, if the robot controller shows a warning
@@ -209,6 +210,13 @@ impl Script {
                 ScriptStep::Restart(process) => branch.closed.course_mut().levels_mut().restart(process),
                 ScriptStep::Lose(process) => branch.closed.course_mut().levels_mut().lose(process),
                 ScriptStep::PowerOff => branch.closed.course_mut().levels_mut().switch_off(),
+                ScriptStep::AirLost(ticks) => {
+                    let from = branch.at().0 + 1;
+                    let when = When { from, until: from + ticks, ..When::ALWAYS };
+                    let faults = vec![Fault { number: 1, what: fault::What::AirLost, when }];
+                    let plan = FaultPlan { seed: 0, faults };
+                    branch.closed.workstation.cell.add_faults(&plan, branch.facility().seed);
+                }
                 ScriptStep::Journal => self.journal = power::journal(branch),
                 ScriptStep::PowerOn => {
                     refused = power::resume(branch, &self.journal).err().map(|error| error.to_string());

@@ -44,7 +44,7 @@ pub struct BranchResult {
     pub untrue: Vec<Confirmation>,
     #[serde(default)]
     pub judged: u64,
-    /// True if a command failed, a person undid the disturbance, and the job continued.
+    /// True if a command failed, a person applied the remedy or undid the disturbance, and the job continued.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub remedied: bool,
     /// True if the branch was to run to the end of the job.

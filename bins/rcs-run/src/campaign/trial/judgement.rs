@@ -119,7 +119,7 @@ impl Trial<'_, '_> {
             rest_after: self.motion.as_ref().map(Motion::ticks),
             untrue: self.untrue,
             judged,
-            remedied: self.remedied,
+            remedied: self.remedied || self.operator.has_remedied(),
             whole: self.until == Until::Job,
             state: end.state.to_string(),
             digest,
