@@ -8,7 +8,7 @@
 
 use std::sync::Arc;
 
-use field::{Failure, Lines, Mapping, Presence, Seen, Sequence, Setting};
+use field::{Failure, Lines, Mapping, Presence, Seen, Sequence, Setting, outputs_after};
 use interfaces::{point::Group, station::ViseOpening};
 use plant::{
     CellDescription,
@@ -84,6 +84,25 @@ pub fn refusal(mapping: &Mapping, action: &Action) -> Option<String> {
     }
 }
 
+/// The entry of an action that devices behind couplers execute; `None` if the cell executes it.
+#[must_use]
+pub fn sequence<'m>(mapping: &'m Mapping, action: &Action) -> Option<&'m Sequence> {
+    group(action).filter(|group| mapping.presence(*group) != Presence::Simulated)?;
+    let line = device_line(action)?;
+    mapping.lines.iter().find(|sequence| sequence.line == line)
+}
+
+/// The values that the outputs of the workstation may have after these actions and during the present one.
+#[must_use]
+pub fn outputs_of<'a>(
+    mapping: &Mapping,
+    actions: impl IntoIterator<Item = &'a Action>,
+    present: Option<&Action>,
+) -> Vec<Vec<i64>> {
+    let line = |action: &Action| sequence(mapping, action).map(|sequence| sequence.line.as_str());
+    outputs_after(mapping, actions.into_iter().filter_map(line), present.and_then(line))
+}
+
 #[must_use]
 pub fn programs(mapping: &Mapping) -> Programs {
     let mut programs = Programs::default();
@@ -151,6 +170,11 @@ impl StationLines {
 
     pub fn step(&mut self, devices: &[Seen]) {
         self.lines.step(&self.mapping, devices);
+    }
+
+    /// Takes over the value of an output that an earlier run has set.
+    pub fn adopt(&mut self, output: usize, value: i64) {
+        self.lines.adopt(output, value);
     }
 
     /// One value for each output of the mapping: see [`Mapping::collect_station`].

@@ -11,6 +11,7 @@
 
 mod desk;
 mod event;
+mod hold;
 
 use std::sync::Arc;
 
@@ -29,6 +30,7 @@ use rcs_core::{
 pub use self::{
     desk::Desk,
     event::{FieldEvent, Happened},
+    hold::FoundOutputs,
 };
 
 const SET_UP_MS: u64 = 2000; // simulated time before the first tick, for the set-up of the devices, ms

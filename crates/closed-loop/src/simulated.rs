@@ -59,6 +59,9 @@ impl World for SimulatedWorkstation {
     fn settle(&mut self, checks: &mut Checks, turn: &Turn<'_>) -> (DeviceInputs, Settled) {
         let &Turn { tick, hws, memory, data, outputs, moved } = turn;
         let commands = checks.contacts.commands(memory);
+        if let Some(field) = self.field.as_deref_mut() {
+            field.desk_mut().note_commands(memory);
+        }
         let (inputs, mut settled) = advance(self, checks, tick, commands, outputs, moved);
         let Checks { placement, truth, .. } = checks;
         placement.look(tick, hws, &memory.task.status, self.cell.description(), &self.cell.parts());
@@ -129,8 +132,10 @@ impl<L> ClosedLoop<L> {
     /// Orders of the last tick, in the order of the devices. Does not allocate.
     pub fn coupler_orders(&mut self) -> impl Iterator<Item = &Orders> {
         let (tick, outputs) = (self.course.tick(), self.outputs());
+        let memory = self.course.memory();
         let desk = match self.workstation.field.as_deref_mut() {
             Some(Field::External(desk)) => {
+                desk.note_commands(memory);
                 desk.order(tick, &outputs);
                 Some(&*desk)
             }

@@ -155,16 +155,23 @@ impl Mapping {
         })
     }
 
+    /// The outputs of a device that are not safe in its image.
+    pub fn outputs_not_safe<'m>(
+        &'m self,
+        device: usize,
+        image: &'m OutWords,
+    ) -> impl Iterator<Item = &'m OutPoint> {
+        let is_on = move |point: &&OutPoint| point.device() == device && point.get(image) != point.safe;
+        self.outputs.iter().filter(is_on)
+    }
+
     /// The outputs of a device that are not safe in its image and may not be on while nothing moves.
     pub fn outputs_on<'m>(
         &'m self,
         device: usize,
         image: &'m OutWords,
     ) -> impl Iterator<Item = &'m OutPoint> {
-        let is_on = move |point: &&OutPoint| {
-            !point.rest && point.device() == device && point.get(image) != point.safe
-        };
-        self.outputs.iter().filter(is_on)
+        self.outputs_not_safe(device, image).filter(|point| !point.rest)
     }
 }
 

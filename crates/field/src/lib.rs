@@ -27,7 +27,7 @@ mod scale;
 
 pub use self::{
     image::{SAFETY, Seen},
-    lines::{Condition, Failure, Lines, Sequence, Setting, Why},
+    lines::{Condition, Failure, Lines, Sequence, Setting, Why, outputs_after},
     mapping::{Device, InPoint, Mapping, OutPoint, Presence, Target},
     scale::{Format, Line},
 };

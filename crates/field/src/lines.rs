@@ -74,6 +74,29 @@ struct Current {
     held: u64,     // ticks for which `done` has held
 }
 
+/// The values that the outputs of the workstation may have after these lines and during the present one.
+#[must_use]
+pub fn outputs_after<'a>(
+    mapping: &Mapping,
+    lines: impl IntoIterator<Item = &'a str>,
+    present: Option<&str>,
+) -> Vec<Vec<i64>> {
+    let mut devices = Lines::new(mapping);
+    let sequence = |line: &str| mapping.lines.iter().find(|sequence| sequence.line == line);
+    for sequence in lines.into_iter().filter_map(sequence) {
+        devices.write(&sequence.sets);
+        devices.write(&sequence.then);
+    }
+    let mut possible = vec![devices.outputs.clone()];
+    if let Some(sequence) = present.and_then(sequence) {
+        for settings in [&sequence.sets, &sequence.then] {
+            devices.write(settings);
+            possible.push(devices.outputs.clone());
+        }
+    }
+    possible
+}
+
 /// The line that the devices execute now, and the outputs of all lines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lines {
@@ -93,6 +116,11 @@ impl Lines {
     #[must_use]
     pub fn outputs(&self) -> &[i64] {
         &self.outputs
+    }
+
+    /// Takes over the value of an output that an earlier run has set.
+    pub fn adopt(&mut self, output: usize, value: i64) {
+        self.write(&[Setting { output, value }]);
     }
 
     #[must_use]

@@ -4,10 +4,13 @@ use std::{hint::black_box, sync::Arc};
 
 use couplers::{MS, Mode, Orders, OutWords, Report, State};
 use field::{Device, Mapping, Seen, Target};
-use interfaces::{DeviceInputs, DeviceOutputs, point::Kind};
+use interfaces::{CommonMemory, DeviceInputs, DeviceOutputs, point::Kind};
 use rcs_core::{Plain as _, tick::Tick};
 
-use super::{FieldEvent, Happened};
+use super::{
+    FieldEvent, Happened,
+    hold::{FoundOutputs, Hold},
+};
 use crate::devices::StationLines;
 
 #[derive(Clone, Debug)]
@@ -28,6 +31,7 @@ pub struct Desk {
     now: u64,
     events: Vec<FieldEvent>,
     lines: StationLines, // lines of the job that devices of the workstation execute
+    hold: Option<Hold>,  // outputs of a resumed run before its first command
 }
 
 const OPERATOR: &str = "operator"; // name of the person who is asked, in events
@@ -49,6 +53,7 @@ impl Desk {
             seen: vec![seen; count],
             now: 0,
             events: Vec::new(),
+            hold: None,
         }
     }
 
@@ -68,9 +73,47 @@ impl Desk {
     pub fn order(&mut self, tick: Tick, outputs: &DeviceOutputs) {
         self.mapping.collect(outputs, &mut self.images);
         self.mapping.collect_station(self.lines.outputs(), &mut self.images);
+        if let Some(hold) = &self.hold {
+            self.images.copy_from_slice(hold.images());
+        }
         for (coupler, image) in self.couplers.iter_mut().zip(&self.images) {
             (coupler.orders.tick, coupler.orders.words) = (tick.0, *image);
         }
+    }
+
+    /// Compares the outputs of the devices with those of an earlier run: of its processes, in `memory`, and of its
+    /// lines of the workstation, which may have one of the values of `station`. The devices keep what they have until a
+    /// process gets a command.
+    pub fn adopt(&mut self, memory: &CommonMemory, station: &[Vec<i64>]) -> FoundOutputs {
+        let outputs = memory.device_outputs();
+        let mut found_outputs = FoundOutputs::default();
+        let mapping = Arc::clone(&self.mapping);
+        for (index, point) in mapping.outputs.iter().enumerate().filter(|(_, point)| !point.is_lamp()) {
+            let Some(coupler) = self.couplers.get(point.device()) else { continue };
+            let found = point.get(&coupler.report.acknowledged);
+            let possible = |values: &Vec<i64>| values.get(index).copied();
+            let expected: Vec<i64> = match point.target {
+                Target::Word(output) => vec![output.read(&outputs)],
+                Target::Station => station.iter().filter_map(possible).collect(),
+            };
+            let (name, is_on) = (point.name.clone(), found != point.safe);
+            if is_on && !(point.rest && expected.contains(&found)) {
+                found_outputs.unknown.push((point.device(), name));
+            } else if is_on {
+                self.lines.adopt(index, found);
+                found_outputs.adopted.push(name);
+            } else if expected.iter().all(|value| *value != point.safe) && !expected.is_empty() {
+                found_outputs.cleared.push(name);
+            }
+        }
+        let images = self.couplers.iter().map(|coupler| coupler.report.acknowledged).collect();
+        self.hold = Some(Hold::new(images, memory));
+        found_outputs
+    }
+
+    /// Notes the commands of the processes after a tick: the first one ends the hold of a resumed run.
+    pub fn note_commands(&mut self, memory: &CommonMemory) {
+        self.hold.take_if(|hold| hold.ends(memory));
     }
 
     pub fn orders(&self) -> impl Iterator<Item = &Orders> {
@@ -227,8 +270,9 @@ impl Desk {
             let report = &coupler.report;
             let gap = |since: u64| u32::try_from(now.saturating_sub(since) / MS).unwrap_or(u32::MAX);
             let what = match (coupler.state, report.state) {
-                (before, State::Ended(confirmed)) if before != report.state => {
-                    Some(Happened::Ended(confirmed))
+                (before, State::Ended(is_confirmed)) if before != report.state => {
+                    let on = mapping.outputs_not_safe(index, &report.acknowledged);
+                    Some(Happened::Ended { is_confirmed, on: on.map(|point| point.name.clone()).collect() })
                 }
                 (_, State::Tripped(trip)) if !matches!(coupler.state, State::Tripped(_)) => {
                     Some(Happened::Tripped(trip))

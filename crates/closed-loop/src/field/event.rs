@@ -20,7 +20,11 @@ pub enum Happened {
     /// An output that must be off at rest is commanded, the device does not answer, or the safety circuit is open.
     Refused,
     Asks(String), // a line of the job needs a person
-    Ended(bool),  // the run has ended; true if the device has confirmed its last outputs
+    /// The run has ended.
+    Ended {
+        is_confirmed: bool, // the device has confirmed its last outputs
+        on: Vec<String>,    // outputs that stay on because they may be on at rest
+    },
 }
 
 impl FieldEvent {
@@ -33,7 +37,7 @@ impl FieldEvent {
             Happened::Released => "io.released",
             Happened::Refused => "io.refused",
             Happened::Asks(_) => "io.asks",
-            Happened::Ended(_) => "io.ended",
+            Happened::Ended { .. } => "io.ended",
         }
     }
 }
@@ -66,8 +70,16 @@ impl fmt::Display for FieldEvent {
                  safety circuit is open"
             ),
             Happened::Asks(request) => write!(f, "the job waits until a person has done this: {request}"),
-            Happened::Ended(true) => write!(f, "{device} has confirmed that its outputs are safe"),
-            Happened::Ended(false) => write!(
+            Happened::Ended { is_confirmed: true, on } if on.is_empty() => {
+                write!(f, "{device} has confirmed that its outputs are safe")
+            }
+            Happened::Ended { is_confirmed: true, on } => write!(
+                f,
+                "{device} has confirmed that its outputs are safe, except {}, which may be on at rest and keep their \
+                 values until its watchdog fires, if it has one",
+                on.join(", ")
+            ),
+            Happened::Ended { is_confirmed: false, .. } => write!(
                 f,
                 "{device} has not confirmed that its outputs are safe: its watchdog makes them so, if it has one"
             ),

@@ -1,7 +1,11 @@
 //! Couplers in simulated time, with sensors and valves of the test instead of a cell.
 
+use couplers::Report;
 use diagnostics::Source;
-use interfaces::device::{GroupHealth, KNOB_FULL, valve};
+use interfaces::{
+    CommonMemory,
+    device::{GroupHealth, KNOB_FULL, valve},
+};
 
 use super::*;
 
@@ -187,8 +191,17 @@ fn end_makes_the_outputs_safe_and_says_whether_that_is_confirmed() {
     bench.field.end(&sensors(0));
     let events = bench.field.desk.take_events();
     let confirmed: Vec<_> = events.iter().map(|event| (event.device.as_str(), event.what.clone())).collect();
-    let ended = Happened::Ended;
-    assert_eq!(confirmed, [("arm", ended(true)), ("fixture", ended(true)), ("pedestal", ended(false))]);
+    let ended = |is_confirmed, on: &[&str]| {
+        let on = on.iter().map(|name| (*name).to_owned()).collect();
+        Happened::Ended { is_confirmed, on }
+    };
+    let expected = [
+        ("arm", ended(true, &["tool.close"])),
+        ("fixture", ended(true, &[])),
+        ("pedestal", ended(false, &[])),
+    ];
+    assert_eq!(confirmed, expected);
+    assert!(events[0].to_string().contains("except tool.close"), "{}", events[0]);
     let arm = bench.field.desk.mapping().device("arm").unwrap();
     let left = bench.field.simulated[arm].coupler().outputs()[0];
     assert_eq!(left, 1 << 11, "tool.close may be on at rest and stays on");
@@ -238,4 +251,67 @@ fn open_safety_circuit_makes_all_outputs_safe() {
     assert!(valves.tool_grip.close);
     let tripped = ["io.tripped"; 3];
     assert_eq!(bench.codes(), [&tripped[..], &["io.refused", "io.released"]].concat());
+}
+
+/// A controller that has closed the tool gripper and supplies the parts gripper, and its devices, whose first output
+/// words are these.
+fn resumed(arm: u16, fixture: u16) -> (Desk, CommonMemory, [usize; 2]) {
+    let mapping = station().desk.mapping().clone();
+    let [arm_at, fixture_at] = ["arm", "fixture"].map(|name| mapping.device(name).unwrap());
+    let reports = |index| {
+        let mut report = Report { state: State::Running, ..Report::STARTING };
+        report.acknowledged.words[0] = [(arm_at, arm), (fixture_at, fixture)]
+            .into_iter()
+            .find_map(|(at, word)| (at == index).then_some(word))
+            .unwrap_or_default();
+        report
+    };
+    let count = mapping.devices.len();
+    let mut desk = Desk::new(Arc::new(mapping));
+    desk.observe(0, (0..count).map(reports));
+    desk.begin();
+    let mut memory = CommonMemory::default();
+    memory.tool_grip.valves.close = true;
+    memory.grip.valves.bits = valve::SUPPLY;
+    (desk, memory, [arm_at, fixture_at])
+}
+
+const TOOL_CLOSE: u16 = 1 << 11; // bits of the first output word of the arm
+const SUPPLY: u16 = 1 << 7;
+const VISE_CLOSE: u16 = 1 << 2; // a bit of the first output word of the fixture
+
+fn closed_vise(desk: &Desk) -> Vec<i64> {
+    let close = |point: &field::OutPoint| i64::from(point.name == "vise.PFIXTURE.close");
+    desk.mapping().outputs.iter().map(close).collect()
+}
+
+#[test]
+fn outputs_that_may_be_on_and_were_set_are_kept_until_the_first_command() {
+    let (mut desk, mut memory, [arm, fixture]) = resumed(TOOL_CLOSE, VISE_CLOSE);
+    let vise = closed_vise(&desk);
+    let found = desk.adopt(&memory, &[vise]);
+    assert_eq!(found.adopted, ["tool.close", "vise.PFIXTURE.close"]);
+    assert_eq!((found.cleared, found.unknown), (vec!["grip.supply".to_owned()], Vec::new()));
+    let words = |desk: &mut Desk, memory: &CommonMemory| {
+        desk.note_commands(memory);
+        desk.order(Tick(8), &memory.device_outputs());
+        let orders: Vec<u16> = desk.orders().map(|orders| orders.words.words[0]).collect();
+        [orders[arm], orders[fixture]]
+    };
+    memory.prim.t3i.number += 1;
+    assert_eq!(words(&mut desk, &memory), [TOOL_CLOSE, VISE_CLOSE], "the link has no outputs");
+    memory.task.subtask.number += 1;
+    assert_eq!(words(&mut desk, &memory), [TOOL_CLOSE | SUPPLY, VISE_CLOSE]);
+}
+
+#[test]
+fn outputs_that_the_earlier_run_did_not_set_are_named() {
+    let (mut desk, mut memory, [arm, fixture]) = resumed(TOOL_CLOSE, VISE_CLOSE);
+    memory.tool_grip.valves.close = false;
+    let off = vec![0; desk.mapping().outputs.len()];
+    let found = desk.adopt(&memory, &[off]);
+    let expected = [(arm, "tool.close".to_owned()), (fixture, "vise.PFIXTURE.close".to_owned())];
+    assert_eq!(found.unknown, expected);
+    let (mut desk, memory, _) = resumed(SUPPLY, 0);
+    assert_eq!(desk.adopt(&memory, &[]).unknown, [(arm, "grip.supply".to_owned())], "not at rest");
 }

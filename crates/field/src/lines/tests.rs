@@ -291,3 +291,16 @@ fn wrong_entries_are_refused_with_their_line() {
         assert!(is_there, "{to}: {at} {said}: {found:#?}");
     }
 }
+
+#[test]
+fn outputs_after_lines_are_those_of_their_entries() {
+    let mapping = Bench::new(0).mapping;
+    let value = |values: &[i64], name: &str| {
+        mapping.outputs.iter().zip(values).find_map(|(point, value)| (point.name == name).then_some(*value))
+    };
+    let possible = outputs_after(&mapping, ["vise open V", "no entry"], Some(MACHINE));
+    let of = |name| possible.iter().map(|values| value(values, name).unwrap()).collect::<Vec<_>>();
+    assert_eq!(of("vise.V.open"), [0, 0, 0], "switched off at the end of the line");
+    assert_eq!(of("machine.V.program"), [0, 17, 17]);
+    assert_eq!(of("machine.V.start"), [0, 1, 0]);
+}

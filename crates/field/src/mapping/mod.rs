@@ -192,6 +192,12 @@ impl OutPoint {
         matches!(self.target, Target::Station)
     }
 
+    /// True for a lamp of the joystick box, which moves nothing.
+    #[must_use]
+    pub fn is_lamp(&self) -> bool {
+        self.group == Group::Joystick
+    }
+
     #[must_use]
     pub const fn device(&self) -> usize {
         self.slot.device

@@ -75,6 +75,13 @@ impl DataSystem {
         Self::new(InMemory::default(), answer_ticks)
     }
 
+    /// A Data System whose items are lost and that still knows the connected controller.
+    #[must_use]
+    pub fn reconnected(answer_ticks: u64) -> Self {
+        let keeper = InMemory { server: Server::started(command::CLIENT), answer: None };
+        Self::new(keeper, answer_ticks)
+    }
+
     /// All state on which later answers depend: items, clients, the command in progress, ticks until its answer.
     pub fn state(&self, tick: Tick) -> impl Debug {
         (&self.keeper, self.status.report, self.due.map(|due| due.since(tick)))

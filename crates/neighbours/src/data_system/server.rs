@@ -46,6 +46,16 @@ pub struct Server<R = Books> {
     records: R,
 }
 
+impl Server<Books> {
+    /// A server without items, to which a client is connected.
+    pub(super) fn started(client: &[u8]) -> Self {
+        let mut records = Books::default();
+        let client = String::from_utf8_lossy(client);
+        let Ok(()) = records.set_session(client.trim_end(), Session::Started as u8);
+        Self { records }
+    }
+}
+
 impl<R: Records> Server<R> {
     #[must_use]
     pub const fn new(records: R) -> Self {

@@ -31,6 +31,8 @@ pub(super) struct Intervention {
     state: State,
     news: Option<WaitReason>, // until it is reported
     asks_line: bool,          // the present line of a resumed job is not known
+    /// A question that a person must see before the line begins again, once.
+    question: Option<String>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -104,6 +106,8 @@ pub enum OperatorError {
     NoSuchLine { found: usize, last: usize },
     #[error("the line of the job is known: `job go` repeats it, `job skip` continues after it")]
     LineKnown,
+    #[error("{0}: look, then `job go` again begins the line, or `job skip` continues after it")]
+    Unknown(String), // whether a line of the job has begun
 }
 
 impl Hwsc {
@@ -173,6 +177,13 @@ impl Hwsc {
         (self.current, self.began, self.intervention.asks_line) = (line, None, false);
         self.later.clear();
         Ok(&named.text)
+    }
+
+    /// Asks a person this question at the first `job go`.
+    #[must_use]
+    pub fn with_question(mut self, question: Option<String>) -> Self {
+        self.intervention.question = question;
+        self
     }
 
     /// When the operator disconnects, a job that waits because of a failed line ends with that failure.
@@ -406,6 +417,9 @@ impl Hwsc {
             return Err(OperatorError::LineNotKnown(self.current));
         }
         let (command, failed, before_line) = (*command, failure.is_some(), *before_line);
+        if let Some(question) = self.intervention.question.take().filter(|_| !skips) {
+            return Err(OperatorError::Unknown(question));
+        }
         let is_last = self.current > self.steps.len();
         if skips && is_last {
             return Err(OperatorError::NoLine);

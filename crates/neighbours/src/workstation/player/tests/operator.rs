@@ -347,3 +347,27 @@ fn delayed_actions_that_have_started_do_not_start_again() {
     let resumed = Hwsc::new(lines(), 100).resumed_at(place, Tick(40));
     assert_eq!(resumed.later.iter().map(|later| later.ticks).collect::<Vec<_>>(), [90]);
 }
+
+#[test]
+fn line_that_may_have_begun_is_begun_again_only_after_a_question() {
+    let place = PlaceInJob { line: 1, is_begun: false, delayed: 0 };
+    let resumed = || {
+        let mut stage = Stage::commands();
+        let lines = stage.hwsc.lines().to_vec();
+        let question = Some("whether it has begun is not known".to_owned());
+        stage.hwsc = Hwsc::new(lines, 100).resumed_at(place, Tick(40)).with_question(question);
+        stage.tick = 40;
+        stage.step();
+        stage
+    };
+    let mut stage = resumed();
+    let refused = stage.hwsc.go_on(Tick(41)).unwrap_err().to_string();
+    assert!(refused.contains("`job go` again") && stage.hwsc.is_waiting(), "{refused}");
+    stage.go_on();
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE MOVE ACQUIRE");
+    let mut stage = resumed();
+    stage.hwsc.skip(Tick(41)).unwrap();
+    stage.until(is_over);
+    assert_eq!(stage.received(), "PAUSE ACQUIRE");
+}
