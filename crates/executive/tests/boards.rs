@@ -37,7 +37,7 @@ static ALONE: Mutex<()> = Mutex::new(());
 
 const PATIENCE: Duration = Duration::from_secs(30);
 const FINGERPRINT: Fingerprint = Fingerprint { program: 1, data: 2, job: 3 };
-const CARD: RunCard = RunCard { fingerprint: FINGERPRINT, real_time: false };
+const CARD: RunCard = RunCard { fingerprint: FINGERPRINT, real_time: false, start: Tick::BEFORE_START };
 
 fn store() -> &'static Store {
     static STORE: OnceLock<Store> = OnceLock::new();

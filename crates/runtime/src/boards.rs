@@ -82,18 +82,20 @@ impl Controller {
     pub fn start(
         config: &RunConfig,
         name: &RunName,
-        store: &Store,
-        job: &Job,
+        (store, job): (&Store, &Job),
+        resumed: Option<&(Tick, CommonMemory)>,
         observer: &mut dyn Observer,
     ) -> Result<Self, StartError> {
         if config.boards == Boards::One {
             return Ok(Self::One(Box::default()));
         }
-        let card =
-            RunCard { fingerprint: fingerprint(store, job), real_time: config.clock == ClockKind::Real };
-        let mut coordinator =
-            within_limit(SET_UP_LIMIT, config.on_stuck, || Coordinator::create(name, &card))
-                .map_err(SplitError::from)?;
+        let real_time = config.clock == ClockKind::Real;
+        let card = RunCard { fingerprint: fingerprint(store, job), real_time, start: Tick::BEFORE_START };
+        let mut coordinator = within_limit(SET_UP_LIMIT, config.on_stuck, || match resumed {
+            Some((tick, memory)) => Coordinator::resume(name, &card, *tick, memory),
+            None => Coordinator::create(name, &card),
+        })
+        .map_err(SplitError::from)?;
         if config.boards == Boards::Split {
             for &board in Board::ALL {
                 let child =

@@ -128,8 +128,6 @@ pub enum StartError {
         path.display()
     )]
     ResumedCell { path: PathBuf, why: String },
-    #[error("a run is resumed with --boards one: boards in other processes start without a journal")]
-    ResumeBoards,
     #[error("--stand-by waits for an operator, and none can connect: {}: {source}", path.display())]
     NoOperator { path: PathBuf, source: io::Error },
     #[error("neighbours cannot connect: {0}")]

@@ -6,9 +6,16 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
-use closed_loop::ClosedLoop;
-use interfaces::{DeviceOutputs, emove::GoneTo};
-use neighbours::workstation::player::{Hwsc, PlaceInJob};
+use closed_loop::{
+    ClosedLoop, devices,
+    field::{Field, FoundOutputs},
+};
+use field::Mapping;
+use interfaces::{CommonMemory, DeviceOutputs, emove::GoneTo};
+use neighbours::{
+    data_system::{ANSWER_TICKS, DataSystem},
+    workstation::player::{Hwsc, PlaceInJob},
+};
 use os_io::files;
 use plant::{Cell, CellDescription, RestoreError};
 use rcs_core::{digest::Digest, tick::Tick};
@@ -17,12 +24,16 @@ use record::{
     journal::{self, Contents, Entry, HEARTBEAT, Identity, LoggedError, RunEnd, Witnesses},
     replay,
 };
-use taskdata::load::{Job, Source, Store};
+use taskdata::load::{
+    Job, Source, Store,
+    job::{JobLine, Step, Workstation as Action},
+};
 
 use crate::{
     boards::Controller,
-    config::{Boards, RobotKind, RunConfig},
+    config::{RobotKind, RunConfig},
     error::StartError,
+    observer::Observer,
 };
 
 const LARGEST_CELL: u64 = 64 << 20; // greatest length of a saved cell, bytes
@@ -37,6 +48,15 @@ pub struct Resumed {
     cell: Vec<u8>,
     cell_path: PathBuf,
     is_simulated: bool, // the robot is simulated, too
+}
+
+/// The causes of a change of the simulated cell, except for the motion of the robot: valves, motors, and the line of
+/// the job.
+pub type Causes = (DeviceOutputs, u32, bool);
+
+#[must_use]
+pub fn causes(entry: &Entry) -> Causes {
+    (entry.memory.device_outputs(), entry.line, entry.begun)
 }
 
 /// The time of day, ms since 1970.
@@ -130,9 +150,6 @@ impl Resumed {
     /// resumed.
     pub fn load(config: &RunConfig) -> Result<Option<Self>, StartError> {
         let Some(path) = &config.resume else { return Ok(None) };
-        if config.boards != Boards::One {
-            return Err(StartError::ResumeBoards);
-        }
         let is_log = journal::is_log(path);
         let beside = journal::cell_beside(config.journal.as_ref().filter(|_| is_log).unwrap_or(path));
         if !is_log {
@@ -170,14 +187,34 @@ impl Resumed {
 
     /// The first entry of the journal that this run writes.
     pub fn first(&self) -> Entry {
-        let memory = self.contents.memory(self.entry().tick);
-        Entry { memory: journal::kept(&memory), asks_line: self.place().is_asked, ..*self.entry() }
+        Entry { memory: journal::kept(&self.buffers().1), asks_line: self.place().is_asked, ..*self.entry() }
     }
 
-    pub fn place(&self) -> PlaceInJob {
+    fn place(&self) -> PlaceInJob {
         let Entry { line, begun, delayed, asks_line, .. } = *self.entry();
         let is_asked = asks_line || journal::asks_for_line(self.contents.end);
         PlaceInJob { line, is_begun: begun, delayed, is_asked }
+    }
+
+    /// The place in the job, for a run whose devices execute lines by a mapping: the present one then begins again. If
+    /// it may start a machine a second time, also a question to a person.
+    pub fn place_with(&self, job: &Job, mapping: Option<&Mapping>) -> (PlaceInJob, Option<String>) {
+        let place = self.place();
+        let present = line_at(job, place).and_then(|line| Some((line, action(line)?)));
+        let entry = mapping.zip(present).and_then(|(mapping, (line, action))| {
+            devices::sequence(mapping, action).map(|sequence| (line, sequence))
+        });
+        let Some((line, sequence)) = entry.filter(|_| place.is_begun) else { return (place, None) };
+        let question = (!sequence.begun.is_empty()).then(|| {
+            format!("whether line {} of the job, `{}`, has begun is not known", line.line, line.text)
+        });
+        (PlaceInJob { is_begun: false, ..place }, question)
+    }
+
+    /// The buffers with which the controller starts, and the tick after which it does.
+    pub fn buffers(&self) -> (Tick, CommonMemory) {
+        let tick = self.entry().tick;
+        (tick, self.contents.memory(tick))
     }
 
     /// The saved cell. Errors: [`StartError::ResumedCell`] if it is of another description or version.
@@ -203,12 +240,101 @@ impl Resumed {
         Err(StartError::OtherJournal { path: self.path.clone(), differences })
     }
 
-    pub fn start(&self, closed: &mut ClosedLoop<Controller>) {
+    /// Start the controller with its knowledge. Errors: [`StartError::FieldNotReady`] if an output of a device is on,
+    /// and the earlier run has not set it, or it may not be on at rest.
+    pub fn start(
+        &self,
+        closed: &mut ClosedLoop<Controller>,
+        job: &Job,
+        observer: &mut dyn Observer,
+    ) -> Result<(), StartError> {
         let entry = self.entry();
-        let memory = self.contents.memory(entry.tick);
-        closed.resume(entry.tick, &memory, &entry.hws, entry.generation);
+        let (tick, memory) = self.buffers();
+        closed.resume(tick, &memory, &entry.hws, entry.generation);
         closed.note_resumed();
+        if let Some(books) = closed.books_mut().filter(|_| memory.task.updates.connected) {
+            *books = DataSystem::reconnected(ANSWER_TICKS);
+            observer.message(
+                "the Data System kept its items in memory, so they are lost; --database FILE keeps them",
+            );
+        }
+        self.adopt_outputs(closed, &memory, job, observer)
     }
+
+    fn adopt_outputs(
+        &self,
+        closed: &mut ClosedLoop<Controller>,
+        memory: &CommonMemory,
+        job: &Job,
+        observer: &mut dyn Observer,
+    ) -> Result<(), StartError> {
+        let Some(desk) = closed.workstation.field.as_deref_mut().map(Field::desk_mut) else { return Ok(()) };
+        let place = self.place();
+        let present = line_at(job, place).filter(|_| place.is_begun).and_then(action);
+        let station = devices::outputs_of(desk.mapping(), executed(job, place), present);
+        let FoundOutputs { adopted, cleared, unknown } = desk.adopt(memory, &station);
+        let refused = desk.mapping().devices.iter().enumerate().filter_map(|(index, device)| {
+            let of_device = unknown.iter().filter(|(of, _)| *of == index);
+            let names: Vec<&str> = of_device.map(|(_, name)| name.as_str()).collect();
+            (!names.is_empty()).then(|| {
+                format!(
+                    "{} at {}: {} on, and the interrupted run did not set this: look at the device, then `rcs-run \
+                     io-release`",
+                    device.name,
+                    device.address,
+                    names.join(", ")
+                )
+            })
+        });
+        let refused: Vec<String> = refused.collect();
+        if !refused.is_empty() {
+            return Err(StartError::FieldNotReady(refused));
+        }
+        if !adopted.is_empty() {
+            observer.message(&format!("outputs that are on and stay on: {}", adopted.join(", ")));
+        }
+        if !cleared.is_empty() {
+            observer.message(&format!(
+                "outputs that the interrupted run had set and that are off, by the fallback of the coupler or a loss \
+                 of power: {}",
+                cleared.join(", ")
+            ));
+        }
+        Ok(())
+    }
+}
+
+fn line_at(job: &Job, place: PlaceInJob) -> Option<&JobLine> {
+    job.steps.get(usize::try_from(place.line).ok()?.checked_sub(1)?)
+}
+
+const fn action(line: &JobLine) -> Option<&Action> {
+    match &line.step {
+        Step::Workstation(action) => Some(action),
+        Step::Command(_) | Step::After { .. } => None,
+    }
+}
+
+/// The actions of the workstation before the present line that have begun, in order.
+fn executed(job: &Job, place: PlaceInJob) -> Vec<&Action> {
+    let count = usize::try_from(place.line).unwrap_or(usize::MAX).saturating_sub(1);
+    let before = job.steps.get(..count.min(job.steps.len())).unwrap_or_default();
+    let mut nearer = 0; // lines `** after` between this one and the present one
+    let mut actions: Vec<&Action> = before
+        .iter()
+        .rev()
+        .filter_map(|line| match &line.step {
+            Step::Command(_) => None,
+            Step::Workstation(action) => Some(action),
+            Step::After { action, .. } => {
+                let is_delayed = nearer < u16::BITS && place.delayed & 1 << nearer != 0;
+                nearer += 1;
+                (!is_delayed).then_some(action)
+            }
+        })
+        .collect();
+    actions.reverse();
+    actions
 }
 
 fn differences(of_journal: &Identity, of_run: &Identity) -> Vec<String> {

@@ -24,7 +24,7 @@ use executive::{
     timing::Stage,
 };
 use geometry::{frame::Frame, pose::WireFrame};
-use interfaces::{CommonMemory, ExternalInputs, hws::HwsStatus};
+use interfaces::{CommonMemory, ExternalInputs, device::Resolvers, hws::HwsStatus};
 use levels::ladder::LadderState;
 use plant::Cell;
 use rcs_core::tick::Tick;
@@ -48,6 +48,7 @@ use crate::{
     operator::{Inputs, Operator},
     pace::Pace,
     result::{DataResult, Events},
+    resume::Causes,
     robot::Robot,
     verdict::Ending,
     views::Viewed,
@@ -95,6 +96,10 @@ pub struct Run {
     /// Ticks for which the host waits for an answer. At a port it waits for the first answer as long as `--wait`.
     silence_limit: Option<u16>,
     first_silence_limit: Option<u16>,
+    saved: Causes, // those of the last saved cell
+    /// True until the robot at a port has reported its position to a resumed run. The resolvers are those of the model
+    /// of the cell, which is where the robot was in the earlier run.
+    is_unreported: bool,
     /// The last reported state of the line.
     trouble: Option<&'static str>,
     /// The operator's action before the failed job can continue.
@@ -195,6 +200,11 @@ impl Run {
     }
 
     fn given(&self, robot: Option<RobotInputs>) -> Given {
+        let unreported = Resolvers { valid: false, ..Resolvers::default() };
+        let robot = robot.map(|inputs| match self.is_unreported {
+            true => RobotInputs { resolvers: Some(unreported), ..inputs },
+            false => inputs,
+        });
         let mut joystick = self.operator.at_the_box();
         joystick.velocity = self.pace.knob(joystick.velocity);
         if self.ramp.is_some() {

@@ -143,7 +143,9 @@ impl Setup {
         {
             return Err(StartError::InputsOfLog { inputs: inputs.clone(), log: log.path().to_owned() });
         }
-        let place = resumed.as_ref().map(|resumed| (resumed.place(), resumed.entry().tick));
+        let place = resumed
+            .as_ref()
+            .map(|resumed| (resumed.place_with(&job, mapping.as_ref()), resumed.entry().tick));
         let neighbours = neighbours(config, &job, place, &description, observer)?;
         let field = match mapping {
             Some(mapping) if config.has_real_devices() => Some(Couplers::Tcp(FieldPort::open(mapping)?)),
@@ -302,7 +304,7 @@ impl CellFile {
 fn neighbours(
     config: &RunConfig,
     job: &Job,
-    place: Option<(PlaceInJob, Tick)>,
+    place: Option<((PlaceInJob, Option<String>), Tick)>,
     description: &CellDescription,
     observer: &mut dyn Observer,
 ) -> Result<Neighbours, StartError> {
@@ -331,8 +333,8 @@ fn neighbours(
     if config.stand_by {
         hwsc = hwsc.on_stand_by();
     }
-    if let Some((place, tick)) = place {
-        hwsc = hwsc.resumed_at(place, tick);
+    if let Some(((place, question), tick)) = place {
+        hwsc = hwsc.resumed_at(place, tick).with_question(question);
     }
     let workstation = match commands {
         Some(endpoint) if config.stand_alone => {

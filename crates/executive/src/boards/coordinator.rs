@@ -17,7 +17,7 @@ use taskdata::files::TaskData;
 
 use super::{
     BOARDS, Board,
-    exchange::Readers,
+    exchange::{Readers, Writers},
     lost::{How, LOST_AFTER, Lost, SplitError},
     pulse::{
         BoardReport, Checked, Epochs, Fingerprint, PulseGiver, ReportReader, RunCard, SystemPulse, sleep,
@@ -118,20 +118,51 @@ pub struct Coordinator {
     pulse: SystemPulse,
     fingerprint: Fingerprint,
     states: LadderState,
+    resumed: Vec<Writers>, // the outputs with which the boards of a resumed run start, until they have read them
 }
 
 impl Coordinator {
     /// Set up the pulse of a run, after removing the remains of killed runs.
     pub fn create(name: &RunName, card: &RunCard) -> Result<Self, SharedMemoryError> {
+        Self::set_up(name, card, None)
+    }
+
+    /// Set up the pulse of a run that starts after `tick` with these buffers. Each board finds them as the outputs of a
+    /// predecessor, which it adopts like those of a lost board.
+    pub fn resume(
+        name: &RunName,
+        card: &RunCard,
+        tick: Tick,
+        memory: &CommonMemory,
+    ) -> Result<Self, SharedMemoryError> {
+        Self::set_up(name, &RunCard { start: tick, ..*card }, Some(memory))
+    }
+
+    fn set_up(
+        name: &RunName,
+        card: &RunCard,
+        resumed: Option<&CommonMemory>,
+    ) -> Result<Self, SharedMemoryError> {
         runs::clean()?;
         memory::have_room()?;
         let node = runs::enter(name, BOARD_0)?;
-        let pulse = SystemPulse { epochs: [FIRST_EPOCH; BOARDS], ..SystemPulse::ZERO };
+        let predecessor = |board: &Board| {
+            let memory = resumed?;
+            let writers = Writers::create(&node, *board, FIRST_EPOCH);
+            Some(writers.map(|mut writers| {
+                writers.write(card.start, memory, &LadderState::default());
+                writers
+            }))
+        };
+        let resumed = Board::ALL.iter().filter_map(predecessor).collect::<Result<Vec<_>, _>>()?;
+        let first = if resumed.is_empty() { FIRST_EPOCH } else { FIRST_EPOCH + 1 };
+        let pulse = SystemPulse { tick: card.start, epochs: [first; BOARDS], ..SystemPulse::ZERO };
         let giver = PulseGiver::create(&node, card, &pulse)?;
         memory::reserve(name)?;
         Ok(Self {
             name: name.clone(),
             ports: Some((giver, node)),
+            resumed,
             seats: Board::ALL.iter().map(|&board| Seat::new(board)).collect(),
             pulse,
             fingerprint: card.fingerprint,
@@ -187,6 +218,7 @@ impl Coordinator {
             }
         }
         self.seats.iter_mut().for_each(|seat| seat.former.clear());
+        self.resumed.clear();
         // The first call after a new listener connects to it, which allocates, so it must not be in a tick.
         if let Some((giver, _)) = &self.ports {
             giver.wake();
@@ -401,6 +433,7 @@ impl Drop for Coordinator {
         }
         self.reap();
         self.seats.clear();
+        self.resumed.clear();
         drop(self.ports.take());
         // Boards that were started by hand keep the files until they have left; the last process to leave removes them.
         let _ = runs::remove_if_deserted(&self.name, &memory::layout());

@@ -153,9 +153,11 @@ impl Member {
         let report =
             BoardReport { fingerprint, pid: std::process::id(), punctual: true, ..BoardReport::ZERO };
         let mut halves = [CommonMemory::ZERO; 2];
-        let (tick, epoch) = (pulse.tick.previous(), pulse.epochs[board.index()]);
-        if pulse.tick != Tick::BEFORE_START {
-            let latched = latch(&node, board, &pulse, &mut halves)?;
+        let epoch = pulse.epochs[board.index()];
+        // Before the first tick the pulse names the tick after which the run starts.
+        let tick = if pulse.tick == card.start { card.start } else { pulse.tick.previous() };
+        if tick != Tick::BEFORE_START || pulse.tick != card.start {
+            let latched = latch(&node, board, epoch, tick, &mut halves)?;
             writers.write(tick, latched, &LadderState::default());
         }
         reports.write(tick, &report);
@@ -322,13 +324,13 @@ impl Member {
 fn latch<'a>(
     node: &Node<ipc::Service>,
     board: Board,
-    pulse: &SystemPulse,
+    epoch: Epoch,
+    last: Tick,
     halves: &'a mut [CommonMemory; 2],
 ) -> Result<&'a CommonMemory, MemberError> {
-    let last = pulse.tick.previous();
     let [even, odd] = halves;
     let half = if last.0.is_multiple_of(2) { even } else { odd };
-    for epoch in (FIRST_EPOCH..pulse.epochs[board.index()]).rev() {
+    for epoch in (FIRST_EPOCH..epoch).rev() {
         // A predecessor that never ran a tick may have left no services, or empty ones.
         let Ok(predecessor) = Readers::open(node, board, epoch) else { continue };
         if predecessor.outputs(last, half)? {

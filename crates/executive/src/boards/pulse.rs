@@ -82,6 +82,8 @@ pub struct RunCard {
     pub fingerprint: Fingerprint,
     /// True if ticks come every 40 ms: boards make the real-time requests.
     pub real_time: bool,
+    /// The tick after which the run starts: later than [`Tick::BEFORE_START`] if it is resumed.
+    pub start: Tick,
 }
 
 /// The epoch of each board, in the order of [`Board::ALL`].
@@ -90,7 +92,7 @@ pub type Epochs = [Epoch; BOARDS];
 /// One pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct SystemPulse {
-    /// The tick to run; [`Tick::BEFORE_START`] until all boards have joined.
+    /// The tick to run; [`RunCard::start`] until all boards have joined.
     pub tick: Tick,
     /// True if the run is over: boards end.
     pub over: bool,

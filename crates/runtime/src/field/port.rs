@@ -23,6 +23,8 @@ use crate::{boards::Controller, config::RunConfig, error::StartError, observer::
 /// Added to the time of the watchdog. Until then a device may refuse its set-up, because the watchdog of an earlier run
 /// may not have fired yet.
 const REFUSED_FOR: Duration = Duration::from_secs(2);
+/// Time within which outputs that nobody writes are read back again.
+const READ_BACK: Duration = Duration::from_millis(1200);
 const PAUSE: Duration = Duration::from_millis(10); // pause between two looks at devices that are not ready
 
 pub struct FieldPort {
@@ -60,7 +62,8 @@ impl FieldPort {
         })
     }
 
-    /// Waits for fresh inputs of all devices. Fails if one refuses its set-up, or is not ready in time.
+    /// Waits for fresh inputs of all devices. A resumed run also waits until the watchdogs of the interrupted run have
+    /// fired and the outputs were read back. Fails if a device refuses its set-up, or is not ready in time.
     pub fn gather(
         &mut self,
         config: &RunConfig,
@@ -78,6 +81,10 @@ impl FieldPort {
                 hindrance(&self.mapping, index, report, now).map(|text| (index, text))
             });
             let hindrances: Vec<(usize, String)> = hindrances.collect();
+            if hindrances.is_empty() && config.resume.is_some() && started.elapsed() < self.settling_time() {
+                thread::sleep(PAUSE);
+                continue;
+            }
             if hindrances.is_empty() {
                 self.warn_of_old_packets(observer);
                 let mut desk = Desk::new(Arc::clone(&self.mapping));
@@ -109,6 +116,14 @@ impl FieldPort {
             }
             thread::sleep(PAUSE);
         }
+    }
+
+    /// The time after which the outputs that an interrupted run has left stay as they are.
+    fn settling_time(&self) -> Duration {
+        let times =
+            self.mapping.devices.iter().filter(|device| device.plan.kind.facts().watchdog_ms.is_some());
+        let longest = times.map(|device| device.plan.watchdog_ms).max();
+        longest.map_or(Duration::ZERO, |ms| Duration::from_millis(ms.into()) + READ_BACK)
     }
 
     fn warn_of_old_packets(&self, observer: &mut dyn Observer) {

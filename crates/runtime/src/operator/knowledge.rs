@@ -1,13 +1,13 @@
 //! `resume` (docs/resume.md): knowledge of the controller that sensors do not give, and the name of the held object.
 
-use geometry::units::inches;
+use geometry::{pose::Pose, units::inches};
 use interfaces::{
     CommonMemory, StatusReport,
     emove::{Holding, Offset},
     grip::Felt,
     operator::{Variable, Write},
 };
-use levels::emove::gripper::EmoveGripper;
+use levels::emove::{gripper::EmoveGripper, robot_place::present_frame};
 use taskdata::files::TaskData;
 
 use super::written;
@@ -67,26 +67,57 @@ pub fn state(memory: &CommonMemory) -> String {
         (Holding::Object(_), Felt::Something) | (Holding::Nothing, Felt::Nothing) => "plausible",
         _ => "not confirmed: look, then `resume held OBJECT GRIP` or `resume held nothing`",
     };
-    let place = emove.status.at.map_or_else(|| "not known".to_owned(), |at| at.site.location.to_string());
-    let way = emove.estimates.way.map_or_else(String::new, |way| {
-        format!(", on the way from {} to {}", way.from.site.location, way.to.site.location)
-    });
-    let offset = match emove.status.offset {
-        Offset::None => "resolvers agree",
-        Offset::Slight => "resolvers within 0.05 in",
-        Offset::Off => "resolvers farther away: the robot was moved",
-        Offset::NotSensed => "resolvers give no position",
-    };
+    let place = place(memory);
     let pins = memory.quick_change.status.end_effector_id;
     let pins = pins.map_or_else(|| "none".to_owned(), |id| id.to_string());
     let attached = emove.status.end_effector_id.map_or_else(|| "none".to_owned(), |id| id.to_string());
     let regrip =
         memory.subtask.regrip.map_or_else(|| "nothing".to_owned(), |regrip| regrip.object.to_string());
     format!(
-        "held: {held} | {fingers}, {between}: {agrees}; place: {place}{way} | {offset}; gripper: {attached} | id pins \
+        "held: {held} | {fingers}, {between}: {agrees}; place: {place}; gripper: {attached} | id pins \
          {pins}; pedestal's hand: {regrip} | opening {:.2} in",
         inches(memory.pedestal.status.grip_size)
     )
+}
+
+/// The place of the robot beside its resolvers. A robot on its way is known as long as it is where it may have come to
+/// rest; else E-move names the nearest places.
+fn place(memory: &CommonMemory) -> String {
+    let emove = &memory.emove;
+    let sensed = present_frame(memory);
+    let distance = |recorded: &Pose| {
+        let inches = sensed.zip(recorded.to_frame().ok()).map(|(here, there)| here.distance(&there).inches);
+        inches.map_or_else(
+            || "resolvers give no position".to_owned(),
+            |inches| format!("resolvers {inches:.2} in from the recorded pose"),
+        )
+    };
+    if let Some(at) = emove.status.at {
+        let offset = match emove.status.offset {
+            Offset::None => "resolvers agree",
+            Offset::Slight => "resolvers within 0.05 in",
+            Offset::Off => "resolvers farther away: the robot was moved",
+            Offset::NotSensed => "resolvers give no position",
+        };
+        return format!("{} | {offset}", at.site.location);
+    }
+    let way = emove.estimates.way.as_ref();
+    let route = way.map(|way| {
+        format!(
+            "on the way from {} to {} | {}",
+            way.from.site.location,
+            way.to.site.location,
+            distance(&way.rest)
+        )
+    });
+    match (emove.nearest.first().copied().flatten(), route) {
+        (None, Some(route)) => route,
+        (None, None) => "not known".to_owned(),
+        (Some(nearest), route) => {
+            let route = route.map_or_else(String::new, |route| format!(", it was {route}"));
+            format!("not known{route}; {nearest}: move it to a resting place with the joystick box")
+        }
+    }
 }
 
 #[cfg(test)]

@@ -29,6 +29,7 @@ use crate::{
     own::OwnRobot,
     pace::Pace,
     result::Events,
+    resume::{Causes, Resumed},
     setup::Setup,
     views::{self, Viewed},
 };
@@ -120,7 +121,9 @@ impl Run {
         if config.boards != Boards::One {
             say("waits for its boards");
         }
-        let controller = Controller::start(&config, &name, &setup.store, &setup.job, &mut *observer)?;
+        let buffers = setup.resumed.as_ref().map(Resumed::buffers);
+        let controller =
+            Controller::start(&config, &name, (&setup.store, &setup.job), buffers.as_ref(), &mut *observer)?;
         say("starts");
         let file = setup.log.take();
         let log_path = file.as_ref().map(|file| file.path().to_owned());
@@ -147,6 +150,7 @@ impl Run {
         if let Some(field) = field {
             closed = closed.with_field(field);
         }
+        let robot_is_at_port = robot.port().is_some();
         if robot.is_elsewhere() {
             closed.workstation.note_robot_elsewhere();
         }
@@ -160,7 +164,7 @@ impl Run {
         let closed = if keeps_books { closed } else { closed.with_data_system_elsewhere() };
         let mut closed = closed;
         if let Some(resumed) = &resumed {
-            resumed.start(&mut closed);
+            resumed.start(&mut closed, &job, &mut *observer)?;
         }
         let contradictions = resumed.as_ref().map(|_| Contradictions::of(closed.memory()));
         let fresh = resumed.as_ref().map(|resumed| Event::Resumed(resumed.to_string()));
@@ -223,6 +227,8 @@ impl Run {
             ramp: None,
             silence_limit: config.robot.silence_limit(),
             first_silence_limit: first_silence_limit(&config),
+            saved: Causes::default(),
+            is_unreported: resumed.is_some() && robot_is_at_port,
             trouble: None,
             remedy: None,
             job,

@@ -89,7 +89,7 @@ impl Run {
 
     pub(super) fn watch_link(&mut self, tick: Tick, memory: &CommonMemory) {
         if memory.t3i.status.link_running {
-            self.first_silence_limit = None;
+            (self.first_silence_limit, self.is_unreported) = (None, false);
         }
         let before = std::mem::replace(&mut self.trouble, memory.t3i.status.trouble());
         if let Some(trouble) = self.trouble.filter(|_| self.trouble != before) {
@@ -152,10 +152,14 @@ impl Run {
         let clock = if self.config.clock == ClockKind::Real { resume::now() } else { 0 };
         let entry = resume::entry(&self.closed, self.neighbours.job(), clock);
         journal.tick(&entry);
-        if tick.0.is_multiple_of(HEARTBEAT)
+        // A robot elsewhere goes on without this program, so the model of the other devices must be up to date.
+        let causes = resume::causes(&entry);
+        let is_changed = self.robot.is_elsewhere() && causes != self.saved;
+        if (is_changed || tick.0.is_multiple_of(HEARTBEAT))
             && let Ok(saved) = self.closed.workstation.cell.save()
         {
             journal.save_cell(journal::cell(&entry, &saved));
+            self.saved = causes;
         }
         if let Some(trouble) = journal.trouble() {
             if let Some(announced) = self.announced.as_ref().filter(|_| self.ramp.is_none()) {
