@@ -84,8 +84,8 @@ pub mod vise;
 mod world;
 
 pub use cell::{
-    Cell, CellError, CellEvent, Droop, Holders, LinkPose, Placement, RestoreError, RingState, SaveError,
-    WorkstationAction, WorkstationError, devices, part_link,
+    Cell, CellError, CellEvent, Droop, Half, Holders, LinkPose, Placement, RestoreError, RingState,
+    SaveError, WorkstationAction, WorkstationError, devices, part_link,
 };
 pub use description::CellDescription;
 pub use ideal::Ideal;

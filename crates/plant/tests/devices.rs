@@ -14,7 +14,7 @@ use geometry::{
 use interfaces::device::{
     DeviceInputs, DeviceOutputs, Picture, RESOLVER_COUNTS, VisionRequest, VisionResponse, VisionStatus, valve,
 };
-use plant::{Cell, CellEvent, Key, Placement, WorkstationAction, WorkstationError};
+use plant::{Cell, CellEvent, Half, Key, Placement, WorkstationAction, WorkstationError};
 use rcs_core::Plain;
 
 fn bytes(inputs: &DeviceInputs) -> Vec<u8> {
@@ -77,6 +77,26 @@ fn cell_follows_a_robot_outside() {
     let events = cell.events();
     assert!(matches!(events[..], [CellEvent::CannotFollow(_)]), "said once: {events:?}");
     assert_eq!(Plate::from_frame(&T3.forward_plate(&cell.joints()), &there).unwrap(), there);
+}
+
+#[test]
+fn halves_of_a_tick_move_like_whole_ticks() {
+    let mut whole = Cell::new(&description(), 1).unwrap();
+    let mut halves = whole.clone();
+    let mut there = Plate::from_frame(&T3.forward_plate(&whole.joints()), &Plate::default()).unwrap();
+    let outputs = DeviceOutputs::default();
+    for _ in 0..60 {
+        there.words[2] += 4;
+        whole.step_following(Some(&there), &outputs);
+        for half in [Half::First, Half::Second] {
+            halves.step_half_following(half, Some(&there), &outputs);
+        }
+        for (joint, other) in whole.joints().into_iter().zip(halves.joints()) {
+            // The arm of the halves reaches a position after 20 ms, the other one after 40 ms.
+            assert!((joint - other).abs() < 2e-3, "{joint} and {other}");
+        }
+    }
+    assert_eq!((whole.events(), halves.events()), (vec![], vec![]));
 }
 
 #[test]

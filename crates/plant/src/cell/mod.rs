@@ -5,6 +5,7 @@ mod clearing;
 pub mod devices;
 mod drumming;
 mod event;
+mod following;
 mod handling;
 mod links;
 pub(crate) mod machining;
@@ -18,7 +19,7 @@ mod truth;
 mod workstation;
 
 use depc::{
-    Limits, Plate,
+    Limits,
     controller::ControllerState,
     fault::{Direction, Injector as LineInjector},
 };
@@ -32,6 +33,7 @@ use rcs_core::tick::{TICK_S, Tick};
 use serde::{Deserialize, Serialize};
 
 pub use event::{CellError, CellEvent};
+pub use following::Half;
 pub use links::{LinkPose, part_link};
 pub use sagging::Droop;
 pub use saving::{RestoreError, SaveError};
@@ -213,26 +215,6 @@ impl Cell {
         inputs
     }
 
-    /// [`Cell::step`] for a robot outside the simulation: the simulated arm, and with it the cell, follows `position`,
-    /// which the robot has acknowledged, if any. The simulated T3 controller is not used: the caller sends
-    /// `outputs.link_tx` to the robot and fills in its answer (`link_rx` and `link_ready` are returned empty).
-    ///
-    /// The arm is limited to the speeds of its servos, so that a distant first position causes a motion and not a
-    /// jump. At an unreachable position it does not move and reports a [`CellEvent::CannotFollow`].
-    pub fn step_following(&mut self, position: Option<&Plate>, outputs: &DeviceOutputs) -> DeviceInputs {
-        let outputs = &self.begin_tick(outputs);
-        let followed = position.map_or(Ok(()), |plate| self.t3.follow(plate));
-        if let Err(problem) = followed
-            && !self.stays_behind
-        {
-            self.events.push(CellEvent::CannotFollow(problem));
-        }
-        self.stays_behind = followed.is_err();
-        self.advance(outputs);
-        self.inputs = self.sense(LinkBytes::default(), false);
-        self.inputs
-    }
-
     /// Begin a tick and its faults. Returns the controller's commands with the faults applied.
     fn begin_tick(&mut self, outputs: &DeviceOutputs) -> DeviceOutputs {
         let before = self.faults.hydraulics_lost();
@@ -278,8 +260,16 @@ impl Cell {
     }
 
     fn advance(&mut self, outputs: &DeviceOutputs) {
+        self.advance_bodies(outputs, self.description.physics.substeps);
+        self.end_tick(outputs);
+    }
+
+    fn advance_bodies(&mut self, outputs: &DeviceOutputs, substeps: u32) {
         self.pedestal.table.order(&outputs.pedestal_table);
-        self.step_bodies(outputs);
+        self.step_bodies(outputs, substeps);
+    }
+
+    fn end_tick(&mut self, outputs: &DeviceOutputs) {
         self.after_tick();
         self.watch_droop();
         self.look(outputs);

@@ -85,6 +85,29 @@ impl Cell {
     }
 
     pub(super) fn sense(&mut self, link_rx: LinkBytes, link_ready: bool) -> DeviceInputs {
+        let mut inputs = DeviceInputs { link_rx, link_ready, ..self.read_sensors() };
+        inputs.vision =
+            if self.vision_elsewhere { VisionResponse::default() } else { self.analysis.answer() };
+        self.dead_times.hold_back(&mut inputs);
+        self.show_faults(&mut inputs);
+        inputs
+    }
+
+    /// The sensors within a tick. The camera, and sensors with a dead time, change only with the tick.
+    pub(super) fn sense_between(&mut self) -> DeviceInputs {
+        let mut inputs = self.read_sensors();
+        inputs.vision = self.inputs.vision;
+        self.dead_times.keep(&self.inputs, &mut inputs);
+        self.show_faults(&mut inputs);
+        inputs
+    }
+
+    fn show_faults(&mut self, inputs: &mut DeviceInputs) {
+        self.faults.inputs(inputs);
+        self.resolver_box.show(&mut inputs.resolvers);
+    }
+
+    fn read_sensors(&mut self) -> DeviceInputs {
         let (grip, force) = self.sense_gripper();
         let resolver_noise = self.description.sensors.resolver_noise;
         let counts = self
@@ -92,24 +115,17 @@ impl Cell {
             .arm()
             .joints()
             .map(|angle| resolver::counts(angle, resolver_noise, &mut self.resolver_noise));
-        let mut inputs = DeviceInputs {
-            link_rx,
-            link_ready,
+        DeviceInputs {
             resolvers: Resolvers { counts, valid: true },
             grip,
             force,
             quick_change: self.changer.sensors(self.description.sensors.ring_hysteresis),
             holsters: self.holster_sensors(),
             joystick: self.joystick.read(),
-            vision: if self.vision_elsewhere { VisionResponse::default() } else { self.analysis.answer() },
             pedestal: self.pedestal.sensors(&mut self.pedestal_noise),
             clamping: self.vise.clamped.map(|_| Name10::clipped(self.vise.location())),
             ..DeviceInputs::default()
-        };
-        self.dead_times.hold_back(&mut inputs);
-        self.faults.inputs(&mut inputs);
-        self.resolver_box.show(&mut inputs.resolvers);
-        inputs
+        }
     }
 
     /// Sensors of the mated gripper. Only the parts gripper has beam breaks and strain gages, only the tool gripper has

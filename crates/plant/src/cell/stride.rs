@@ -35,10 +35,10 @@ struct TickSteps {
 }
 
 impl Cell {
-    pub(super) fn step_bodies(&mut self, outputs: &DeviceOutputs) {
+    pub(super) fn step_bodies(&mut self, outputs: &DeviceOutputs, substeps: u32) {
         let near = self.near_arm();
         let mut stride = self.stride(outputs);
-        let mut left = self.description.physics.substeps;
+        let mut left = substeps;
         while left > 0 {
             left -= self.step_physics(outputs, &near, &mut stride, left);
         }

@@ -60,6 +60,13 @@ impl DeadTimes {
             sensor.write(inputs, word);
         }
     }
+
+    /// Keeps the words that were shown last: time advances only in [`Self::hold_back`].
+    pub fn keep(&self, last: &DeviceInputs, inputs: &mut DeviceInputs) {
+        for Late { sensor, .. } in &self.0 {
+            sensor.write(inputs, sensor.read(last));
+        }
+    }
 }
 
 #[cfg(test)]

@@ -318,22 +318,22 @@ impl T3Controller {
         }
         let words = Plate::from_frame(plate, &self.set_point.plate).map_err(|_| DriveError::OutOfRange)?;
         self.set_point.take(&words).map_err(DriveError::Joints)?;
-        self.reach_set_point();
+        self.reach_set_point(1.0);
         Ok(())
     }
 
-    /// Follow the position of another robot within a period. An arm without pressure does not move. Fails with
-    /// [`JointProblem`] if this arm cannot reach the position; the command is unchanged.
-    pub fn follow(&mut self, plate: &Plate) -> Result<(), JointProblem> {
+    /// Follow the position of another robot within `periods` of a period. An arm without pressure does not move. Fails
+    /// with [`JointProblem`] if this arm cannot reach the position; the command is unchanged.
+    pub fn follow(&mut self, plate: &Plate, periods: f64) -> Result<(), JointProblem> {
         if self.arm.has_pressure() && *plate != self.set_point.plate {
             self.set_point.take(plate)?;
-            self.reach_set_point();
+            self.reach_set_point(periods);
         }
         Ok(())
     }
 
-    fn reach_set_point(&mut self) {
-        self.arm.reach(self.set_point.joints, f64::from(self.limits.period_us()) / 1e6);
+    fn reach_set_point(&mut self, periods: f64) {
+        self.arm.reach(self.set_point.joints, periods * f64::from(self.limits.period_us()) / 1e6);
     }
 
     fn enter(&mut self, stage: Stage) {

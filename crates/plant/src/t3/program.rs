@@ -101,7 +101,7 @@ impl T3Controller {
         self.keys = ControllerInputs { hold: self.keys.hold, ..ControllerInputs::default() };
         if out.moving {
             self.counts.moves += 1;
-            self.reach_set_point();
+            self.reach_set_point(1.0);
         }
         if out.function != NO_FUNCTION {
             self.messages.push(Message::Function(out.function));
