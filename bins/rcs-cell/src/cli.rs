@@ -66,6 +66,10 @@ pub struct Cli {
     /// The camera of the station is the neighbour `vision` of a run: unix:PATH of its --network
     #[arg(long, value_name = "ADDRESS", requires = "station", conflicts_with_all = ["link", "emulate"])]
     pub vision: Option<Address>,
+    /// The inputs of the station reach its couplers this number of ticks late, to test a controller
+    #[arg(long, value_name = "TICKS", default_value_t = 0, requires = "station")]
+    #[arg(value_parser = clap::value_parser!(u8).range(..=25))]
+    pub delay: u8,
     /// The data.
     #[command(flatten)]
     pub data: DataArgument,

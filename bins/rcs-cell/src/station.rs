@@ -1,46 +1,51 @@
 //! `--station NAME`: the whole simulated cell behind the protocols of a real one.
 //!
 //! ```text
-//!   rcs-run ──Modbus TCP──► a server per device of the mapping ──┐ every 40 ms: outputs to the cell,
-//!           ──EGM (UDP)───► robot, in its own thread ────────────┤ cell's tick, sensors to registers
+//!   rcs-run ──Modbus TCP──► a server per device of the mapping ──┐ every 20 ms: outputs to the cell, half
+//!           ──EGM (UDP)───► robot, in its own thread ────────────┤ a tick of the cell, sensors to registers
 //!           ──vision──────► camera, in its own thread ───────────┘
 //! ```
 //!
-//! The cell advances when its outputs have been read, and its sensors are in the registers at once. So the station
-//! delays a controller by one tick at most, and by none if it writes and reads between two ticks. Lines of standard
-//! input are actions of a person at the cell: lines of a job without `**`.
+//! The cell advances when its outputs have been read, and its sensors are in the registers at once. A controller writes
+//! 1 ms and reads 32 ms after its slots begin, so a step of the cell is always in between, and the station adds no
+//! tick of delay. Lines of standard input are actions of a person at the cell: lines of a job without `**`.
 
 mod camera;
+mod pace;
 mod robot;
 
 use std::{
+    collections::VecDeque,
     io,
     path::Path,
     sync::{
         atomic::{AtomicBool, Ordering},
         mpsc::Receiver,
     },
-    time::{Duration, Instant},
 };
 
 use closed_loop::{devices, workstation::orders};
 use couplers::{Emulated, InWords, OutWords, Plan};
 use depc::Plate;
 use diagnostics::FIELDS;
-use executive::field::{Clients, Station as Server};
+use executive::{
+    field::{Clients, Station as Server},
+    realtime::{self, CELL_PRIORITY, FIELD_PRIORITY},
+};
 use field::{Device, Mapping, Presence};
 use geometry::kinematics::T3;
 use interfaces::{DeviceOutputs, point::Group};
 use os_io::{stdout_line, text::amount};
-use plant::{Cell, CellDescription, CellEvent, WorkstationAction, description::CELL, devices::Devices};
-use rcs_core::{Plain as _, tick::TICK_MS};
+use plant::{Cell, CellDescription, CellEvent, Half, WorkstationAction, description::CELL, devices::Devices};
+use rcs_core::Plain as _;
 use taskdata::load::{Store, job};
 
-use self::{camera::Camera, robot::Robot};
+use self::{
+    camera::Camera,
+    pace::{Pace, STEPS_PER_TICK},
+    robot::Robot,
+};
 use crate::{cli::Cli, emulate::typed};
-
-const TICK: Duration = Duration::from_millis(TICK_MS);
-const MOST_BEHIND: u32 = 5; // ticks that were missed while the system slept are left out
 
 const HELP: &str = "tray UNIT SECTOR OBJECT [X Y ANGLE]   put a part into a tray; also vise and drum lines\n\
                     estop      press the emergency stop: safety circuit open, robot stopped\n\
@@ -48,7 +53,7 @@ const HELP: &str = "tray UNIT SECTOR OBJECT [X Y ANGLE]   put a part into a tray
                     motors, start, stop                   the EGM robot's buttons\n\
                     cut DEVICE, join DEVICE               cut the cable to a coupler, or join it\n\
                     restart DEVICE                        switch a coupler off and on\n\
-                    status     connections, outputs, devices and parts\n\
+                    status     connections, outputs, devices, parts and punctuality\n\
                     quit       end the program";
 
 struct Coupler {
@@ -70,7 +75,10 @@ pub struct Station {
     plate: Plate,
     outputs: Vec<i64>,
     sensors: Vec<i64>,
-    ticks: u64,
+    delayed: VecDeque<Vec<InWords>>, // images that have not reached the couplers yet, oldest first
+    delay: usize,                    // their number
+    half: Half,
+    pace: Pace,
 }
 
 impl Station {
@@ -96,7 +104,10 @@ impl Station {
             plate: Plate::default(),
             outputs: Vec::new(),
             sensors: Vec::new(),
-            ticks: 0,
+            delayed: VecDeque::new(),
+            delay: usize::from(cli.delay) * usize::from(STEPS_PER_TICK),
+            half: Half::First,
+            pace: Pace::new(),
         };
         station.outputs = vec![0; station.mapping.outputs.len()];
         station.show(&station.cell.inputs());
@@ -116,27 +127,26 @@ impl Station {
             stdout_line!("[station] not in the mapping: {}", without.join(", "));
         }
         let lines = typed();
-        let start = Instant::now();
-        let mut next = TICK;
+        if let Err(why) = realtime::raise_priority(CELL_PRIORITY) {
+            stdout_line!(
+                "[station] ordinary priority ({why}): on a busy machine it is late, and the robot leaves its path"
+            );
+        }
+        self.pace = Pace::new();
         while !stop.load(Ordering::Relaxed) {
             if self.obey_all(&lines) {
                 break;
             }
-            self.tick();
-            let now = start.elapsed();
-            if now > next + TICK * MOST_BEHIND {
-                stdout_line!(
-                    "[station] the cell is {} ms late: this machine is too busy",
-                    (now - next).as_millis()
-                );
-                next = now;
+            for _ in 0..self.pace.wait() {
+                self.step();
             }
-            std::thread::sleep(next.saturating_sub(now));
-            next += TICK;
+            self.pace.end_step();
+            self.tell();
             if let Some(error) = self.robot.as_mut().and_then(Robot::failure) {
                 return Err(format!("the socket of the robot has failed: {error}"));
             }
         }
+        stdout_line!("[station] {}", self.pace);
         Ok(())
     }
 
@@ -194,12 +204,16 @@ impl Station {
         found.ok_or_else(|| format!("one of the couplers {} was expected, found {name}", known()))
     }
 
-    fn tick(&mut self) {
+    /// Advances the cell by half a tick.
+    fn step(&mut self) {
         let images: Vec<OutWords> = self.couplers.iter_mut().map(Coupler::outputs).collect();
         let mut outputs = DeviceOutputs::default();
         self.mapping.spread(&images, &mut outputs);
         self.mapping.spread_station(&images, &mut self.outputs);
-        self.devices.follow(&mut self.cell, &self.outputs);
+        if self.half == Half::First {
+            // The times of the devices are whole ticks.
+            self.devices.follow(&mut self.cell, &self.outputs);
+        }
         if let Some(camera) = &self.camera {
             outputs.vision = camera.request();
         }
@@ -208,13 +222,12 @@ impl Station {
             .as_ref()
             .and_then(|robot| Plate::from_frame(&T3.forward_plate(&robot.joints()), &self.plate).ok());
         self.plate = moved.unwrap_or(self.plate);
-        let inputs = self.cell.step_following(moved.as_ref(), &outputs);
+        let inputs = self.cell.step_half_following(self.half, moved.as_ref(), &outputs);
         if let Some(camera) = &self.camera {
             camera.answer(&inputs.vision);
         }
         self.show(&inputs);
-        self.tell();
-        self.ticks += 1;
+        self.half = self.half.next();
     }
 
     fn show(&mut self, inputs: &interfaces::DeviceInputs) {
@@ -222,7 +235,9 @@ impl Station {
         self.devices.sense(&self.cell, &mut self.sensors);
         self.mapping.sample(inputs, &mut images);
         self.mapping.sample_station(&self.sensors, &mut images);
-        for (coupler, image) in self.couplers.iter().zip(images) {
+        self.delayed.push_back(images);
+        let arrived = self.delayed.len().checked_sub(self.delay + 1).and_then(|_| self.delayed.pop_front());
+        for (coupler, image) in self.couplers.iter().zip(arrived.into_iter().flatten()) {
             coupler.server.with(|emulated| emulated.show(&coupler.plan, &image));
         }
     }
@@ -273,14 +288,18 @@ impl Station {
         for part in self.cell.parts() {
             stdout_line!("[status] {} in {} {}", part.name, part.location, part.sector);
         }
-        stdout_line!("[status] {} of the cell", amount(self.ticks, "tick"));
+        stdout_line!("[status] {}", self.pace);
     }
 }
 
 impl Coupler {
     fn open(device: &Device) -> Result<Self, String> {
         let Device { name, address, plan, .. } = device;
-        let server = Server::open(*address, Emulated::of(plan)).map_err(|error| {
+        let prepare = || {
+            // The station reports missing settings for its own thread. These threads get at most the same ones.
+            let _ = realtime::raise_priority(FIELD_PRIORITY);
+        };
+        let server = Server::open_with(*address, Emulated::of(plan), prepare).map_err(|error| {
             let hint = match error.kind() {
                 io::ErrorKind::AddrNotAvailable => {
                     format!(": `ip address add {}/32 dev lo` makes it one of this machine", address.ip())

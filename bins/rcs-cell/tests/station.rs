@@ -34,11 +34,11 @@ struct Station {
 
 impl Station {
     fn start() -> Self {
-        Self::of(|text| text)
+        Self::start_with(&[], |text| text)
     }
 
-    /// A station with a change of its mapping.
-    fn of(change: impl FnOnce(String) -> String) -> Self {
+    /// A station with more options, and a change of its mapping.
+    fn start_with(options: &[&str], change: impl FnOnce(String) -> String) -> Self {
         let directory = tempfile::tempdir().unwrap();
         let path: PathBuf = directory.path().join("free.toml");
         let mut text = fs::read_to_string(format!("{DATA}/field/station.toml")).unwrap();
@@ -51,6 +51,7 @@ impl Station {
         let mut child = Command::new(env!("CARGO_BIN_EXE_rcs-cell"))
             .args(["--data", DATA, "--station"])
             .arg(&path)
+            .args(options)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
@@ -165,14 +166,15 @@ fn vise_and_tray_answer_to_outputs_and_a_person() {
     station.wait_for("[status] outputs on: ");
     station.wait_for("[status] LINKBAR1_BH in UNIT_1 4");
     station.enter("quit");
+    while !station.wait_for("[station] ").contains("steps of 20 ms") {}
     assert!(station.child.wait().unwrap().success());
 }
 
 /// A WAGO: outputs at 0x200, a watchdog that a register starts, and exception 4 to everything once it has fired.
 #[test]
 fn coupler_of_another_kind_answers_as_its_manual_says() {
-    let station =
-        Station::of(|text| text.replace("\"bk9000\"", "\"wago\"").replace("holding 0x8", "holding 0x2"));
+    let wago = |text: String| text.replace("\"bk9000\"", "\"wago\"").replace("holding 0x8", "holding 0x2");
+    let station = Station::start_with(&[], wago);
     let mut client = Client::connect(station.fixture);
     assert_eq!(client.write(0x1000, 5), [16, 0x10, 0, 0, 1]);
     assert_eq!(client.write(0x1001, 0x8000), [16, 0x10, 1, 0, 1], "only function 16 restarts it");
@@ -182,6 +184,19 @@ fn coupler_of_another_kind_answers_as_its_manual_says() {
     assert_eq!(client.ask(&[3, 2, 0, 0, 1]).unwrap(), [0x83, 4]);
     assert_eq!(client.ask(&[6, 0x10, 8, 0xAA, 0x55]).unwrap(), [6, 0x10, 8, 0xAA, 0x55]);
     assert_eq!(client.ask(&[3, 2, 0, 0, 1]).unwrap(), [3, 2, 0, 0]);
+}
+
+#[test]
+fn delayed_inputs_arrive_after_the_delay() {
+    let station = Station::start_with(&["--delay", "25"], |text| text);
+    let started = Instant::now();
+    let mut client = Client::connect(station.fixture);
+    while client.read(3) & OPENED == 0 {
+        assert!(started.elapsed() < PATIENCE);
+        thread::sleep(Duration::from_millis(10));
+    }
+    // The first image is as old as the first step, which is before the station was ready.
+    assert!(started.elapsed() >= Duration::from_millis(500), "a second was asked for");
 }
 
 #[test]

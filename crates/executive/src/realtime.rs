@@ -26,6 +26,9 @@ use thread_priority::{
 /// Priority of the tick: above interrupt threads of ordinary devices, below the kernel's own watchdogs.
 pub const PRIORITY: u8 = 80;
 pub const FIELD_PRIORITY: u8 = PRIORITY - 1; // priority of the threads of couplers: below the tick
+/// Priority of a simulated cell in real time. Its physics takes milliseconds, so everything that must be punctual in
+/// both programs is above it.
+pub const CELL_PRIORITY: u8 = FIELD_PRIORITY - 1;
 
 /// Size of the stack that is touched beforehand; a tick needs a fraction of it.
 const STACK_BYTES: usize = 512 * 1024;

@@ -11,7 +11,10 @@ use std::{
     thread::{self, JoinHandle},
 };
 
-use executive::egm::EgmOptions;
+use executive::{
+    egm::EgmOptions,
+    realtime::{self, FIELD_PRIORITY},
+};
 use geometry::kinematics::{HOME_JOINTS, Joints};
 
 use crate::{cli::EgmTarget, emulate::Emulation};
@@ -33,6 +36,8 @@ impl Robot {
         let thread = thread::Builder::new()
             .name("robot".into())
             .spawn(move || {
+                // The station reports missing settings for its own thread. This thread gets at most the same ones.
+                let _ = realtime::raise_priority(FIELD_PRIORITY);
                 emulation.run(&ended, &pressed, |robot| {
                     *shown.lock().unwrap_or_else(PoisonError::into_inner) = *robot.joints();
                 })

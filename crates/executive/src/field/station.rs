@@ -80,6 +80,12 @@ pub struct Station {
 impl Station {
     /// Listens at `address`; port 0 chooses a free one. Fails if the address cannot be used.
     pub fn open(address: SocketAddr, coupler: Emulated) -> Result<Self, StationError> {
+        Self::open_with(address, coupler, || {})
+    }
+
+    /// Like [`Self::open`]. Each thread of the server calls `prepare` first, for example to request real-time
+    /// scheduling.
+    pub fn open_with(address: SocketAddr, coupler: Emulated, prepare: fn()) -> Result<Self, StationError> {
         let failed = |source| StationError { address, source };
         let listener = TcpListener::bind(address).map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
@@ -94,7 +100,10 @@ impl Station {
         let served = Arc::clone(&shared);
         let thread = thread::Builder::new()
             .name("station".into())
-            .spawn(move || accept(&listener, &served))
+            .spawn(move || {
+                prepare();
+                accept(&listener, &served);
+            })
             .map_err(failed)?;
         Ok(Self { shared, address, thread: Some(thread) })
     }
