@@ -103,6 +103,14 @@ impl Device {
         self.orders.write(orders);
     }
 
+    /// Shortly before a tick, brings the newest report, and the memory of the orders, into the caches of this core. The
+    /// thread gets the same orders once more. Without this, an order takes some microseconds: each of its cache lines is
+    /// with the core that has read it last.
+    pub fn warm_up(&mut self) {
+        self.reports.read();
+        self.orders.write(&self.newest);
+    }
+
     /// The newest report. Does not wait.
     pub fn report(&mut self) -> &Report {
         self.reports.read()

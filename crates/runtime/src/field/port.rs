@@ -146,9 +146,7 @@ impl FieldPort {
 
     /// Shortly before a tick, fetches the newest reports and everything that the tick needs into the caches.
     pub fn warm_up(&mut self, closed: &mut ClosedLoop<Controller>) {
-        self.devices.iter_mut().for_each(|device| {
-            device.report();
-        });
+        self.devices.iter_mut().for_each(Device::warm_up);
         if let Some(field) = closed.workstation.field.as_deref_mut() {
             field.desk_mut().warm_up();
         }
