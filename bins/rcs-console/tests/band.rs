@@ -105,7 +105,7 @@ fn every_state_follows_from_its_sensors() {
                 (devices.field.grip, devices.field.any) = (GroupHealth::Stale, GroupHealth::Stale);
             },
             Condition::Stopped,
-            "field I/O: grip stale",
+            "field I/O: grip STALE",
             "waits for the device",
         ),
         (
@@ -114,7 +114,7 @@ fn every_state_follows_from_its_sensors() {
                 (field.hand, field.any) = (GroupHealth::Tripped, GroupHealth::Tripped);
             },
             Condition::Stopped,
-            "pedestal tripped",
+            "pedestal TRIPPED",
             "io go DEVICE",
         ),
         (

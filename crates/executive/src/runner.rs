@@ -8,7 +8,7 @@ use interfaces::ExternalInputs;
 use crate::{
     alloc::{self, Section},
     histogram::Histogram,
-    memory::{Publisher, cell::CellView, layout::Pulse},
+    memory::{Publisher, cell::CellView, field::FieldView, layout::Pulse},
     timing::{Stage, StageTimes},
 };
 use closed_loop::course::{Course, Levels};
@@ -137,6 +137,13 @@ impl<L> Runner<L> {
     pub fn show_cell<'a>(&mut self, view: impl FnOnce() -> &'a CellView) {
         if let Some(publisher) = &mut self.publisher {
             publisher.show_cell(view());
+        }
+    }
+
+    /// Publish the couplers after a tick; `view` is called if the run is published. Does not allocate.
+    pub fn show_field(&mut self, view: impl FnOnce() -> FieldView) {
+        if let Some(publisher) = &mut self.publisher {
+            publisher.show_field(&view());
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Field I/O of a run: the mapping, and the run's messages about it.
 
 mod port;
+mod view;
 
 use std::path::Path;
 
@@ -11,14 +12,19 @@ use field::{Mapping, Presence};
 use interfaces::point::Group;
 use os_io::files;
 use plant::fault::{FaultPlan, What};
+use record::Log;
 
 use sessions::network::Role;
 use taskdata::load::{Job, Step};
 
-pub use self::port::{FieldPort, hindrance};
+pub use self::{
+    port::{FieldPort, hindrance},
+    view::{view_of_log, view_of_run},
+};
 use crate::{
     config::{FieldConfig, RobotKind, RunConfig},
     error::StartError,
+    log::MAPPING,
 };
 
 /// Reads the mapping of a run. Also returns its text. Errors: [`StartError`], with all errors of the file.
@@ -29,6 +35,13 @@ pub fn load(config: &FieldConfig, data: &Path) -> Result<(Mapping, String), Star
 /// Reads a mapping. Errors: [`StartError`], with all errors of the file.
 pub fn read(path: &Path) -> Result<Mapping, StartError> {
     read_with_text(path).map(|(mapping, _)| mapping)
+}
+
+/// The mapping of a log. `None` for a run without field I/O, and if this program cannot read the mapping.
+#[must_use]
+pub fn of_log(log: &Log) -> Option<Mapping> {
+    let text = String::from_utf8_lossy(&log.attachment(MAPPING)?.data).into_owned();
+    Mapping::parse(&Source { name: MAPPING.to_owned(), text: text.into() }).ok()
 }
 
 fn read_with_text(path: &Path) -> Result<(Mapping, String), StartError> {

@@ -267,6 +267,7 @@ impl Run {
         self.note_neighbours(tick);
         self.note_viewers(tick);
         self.publish_cell(tick);
+        self.publish_field(tick);
         match progress {
             player::Progress::Over => return Some(self.left(Ending::Finished)),
             // Contacts of the sinking arm belong to the run.

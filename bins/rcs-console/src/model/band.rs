@@ -228,7 +228,7 @@ fn stopped(scene: &Scene<'_>) -> Option<Finding> {
     if let Some(devices) = late_devices(&external.devices.field) {
         let next = match external.devices.field.any {
             GroupHealth::Tripped => "5: `io go DEVICE`, then `job go`",
-            _ => "the robot waits for the device: `io` names it",
+            _ => "the robot waits for the device: 3, then v shows it",
         };
         return stopped(devices, next.to_owned());
     }
@@ -251,8 +251,10 @@ pub fn late_devices(field: &FieldHealth) -> Option<String> {
     if field.any == GroupHealth::Fresh {
         return None;
     }
-    let groups: Vec<String> = field.late().map(|(group, health)| format!("{group} {health}")).collect();
-    let groups = if groups.is_empty() { format!("a device {}", field.any) } else { groups.join(", ") };
+    let word = |health: GroupHealth| health.to_string().to_uppercase();
+    let groups: Vec<String> =
+        field.late().map(|(group, health)| format!("{group} {}", word(health))).collect();
+    let groups = if groups.is_empty() { format!("a device {}", word(field.any)) } else { groups.join(", ") };
     Some(format!("field I/O: {groups}"))
 }
 

@@ -88,6 +88,8 @@ impl Model {
             Key::Char('g') => self.prompt = Some(Prompt::Tick(String::new())),
             Key::Char('a') => self.acknowledged = self.tick(),
             Key::Char('v') if self.screen == Screen::Cell => self.draw_or_not(source),
+            Key::Char('v') if self.screen == Screen::Link => self.turn_to(Screen::Points),
+            Key::Char('v') if self.screen == Screen::Points => self.turn_to(Screen::Link),
             Key::Char('s') if self.screen == Screen::Process => {
                 (self.pane, self.scroll) = (Pane::Table, 0);
                 self.shows_source = !self.shows_source;

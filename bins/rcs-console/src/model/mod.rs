@@ -10,6 +10,7 @@ pub mod ladder;
 pub mod link;
 mod operating;
 pub mod panels;
+pub mod points;
 pub mod procedures;
 pub mod process;
 pub mod session;
@@ -50,6 +51,8 @@ pub enum Screen {
     Process,
     /// The link to the robot, and the times of the ticks
     Link,
+    /// The points of field I/O, and their couplers
+    Points,
     /// Joints, sensors and parts
     Cell,
     /// Requests to the run, and its answers (IV.2)
@@ -61,8 +64,18 @@ pub enum Screen {
 }
 
 impl Screen {
+    /// The screens with a number. The points are a view of the link's.
     pub const ALL: [Self; 7] =
         [Self::Ladder, Self::Process, Self::Link, Self::Cell, Self::Terminal, Self::Panels, Self::Procedures];
+
+    /// The numbered screen that shows it.
+    #[must_use]
+    pub const fn tab(self) -> Self {
+        match self {
+            Self::Points => Self::Link,
+            screen => screen,
+        }
+    }
 
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -70,6 +83,7 @@ impl Screen {
             Self::Ladder => "Ladder",
             Self::Process => "Process",
             Self::Link => "Link",
+            Self::Points => "Points",
             Self::Cell => "Cell",
             Self::Terminal => "Terminal",
             Self::Panels => "Panels",

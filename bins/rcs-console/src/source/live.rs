@@ -6,7 +6,8 @@ use std::{
 };
 
 use executive::memory::{
-    Attached, OnStuck, ReadError, RunName, SET_UP_LIMIT, SharedMemoryError, cell::CellView, within_limit,
+    Attached, OnStuck, ReadError, RunName, SET_UP_LIMIT, SharedMemoryError, cell::CellView, field::FieldView,
+    within_limit,
 };
 
 use super::{About, Cell, Source, State, seen};
@@ -25,6 +26,7 @@ pub struct Live {
     run: Attached,
     pictures: VecDeque<Picture>,
     cells: VecDeque<CellView>,
+    fields: VecDeque<FieldView>,
     story: Story,
     state: State,
     news: Instant,
@@ -38,6 +40,7 @@ impl Live {
             run,
             pictures: VecDeque::new(),
             cells: VecDeque::new(),
+            fields: VecDeque::new(),
             story: Story::new(STORY),
             state: State::Runs,
             news: Instant::now(),
@@ -81,6 +84,12 @@ impl Live {
                 self.cells.pop_front();
             }
             self.cells.push_back(cell);
+        }
+        if let Ok(Some(field)) = self.run.field() {
+            if self.fields.len() == KEPT {
+                self.fields.pop_front();
+            }
+            self.fields.push_back(field);
         }
         self.news = Instant::now();
     }
@@ -131,5 +140,10 @@ impl Source for Live {
         let end = self.cells.partition_point(|cell| cell.tick.0 <= tick);
         let shown = end.checked_sub(1).and_then(|at| self.cells.get(at));
         shown.map_or(Cell::NotPublished, |cell| Cell::Shown(Box::new(*cell)))
+    }
+
+    fn field(&self, picture: &Picture) -> Option<Box<FieldView>> {
+        let end = self.fields.partition_point(|field| field.tick <= picture.tick);
+        self.fields.get(end.checked_sub(1)?).map(|field| Box::new(*field))
     }
 }

@@ -8,7 +8,7 @@ mod seen;
 pub use live::Live;
 pub use recorded::Recorded;
 
-use executive::memory::cell::CellView;
+use executive::memory::{cell::CellView, field::FieldView};
 use record::views::{Commander, Controller, JobState, Part};
 use runtime::controller_state;
 use taskdata::load::Source as Blocks;
@@ -30,6 +30,11 @@ pub trait Source {
     fn story(&self) -> &Story;
 
     fn cell(&self, tick: u64) -> Cell;
+
+    /// The couplers and points in the tick of a picture; `None` without field I/O.
+    fn field(&self, _: &Picture) -> Option<Box<FieldView>> {
+        None
+    }
 
     fn cell_text(&self) -> Option<&str> {
         None

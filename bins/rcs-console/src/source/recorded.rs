@@ -5,13 +5,18 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use executive::memory::field::FieldView;
+use field::Mapping;
 use rcs_core::tick::Tick;
 use record::{
     Attachment, Log, ReadError,
     tables::{self, Origin},
-    views::{Changes, Commander, Controller, JobState, Part, Parts},
+    views::{Changes, Commander, Controller, Couplers, JobState, Part, Parts},
 };
-use runtime::result::FailureResult;
+use runtime::{
+    field::{of_log, view_of_log},
+    result::FailureResult,
+};
 use taskdata::load::Source as Blocks;
 
 use super::{About, Cell, RecordedCell, Source, State, deltas::Deltas};
@@ -35,6 +40,8 @@ pub struct Recorded {
     job: Changes<JobState>,
     commander: Changes<Commander>,
     controller: Changes<Controller>,
+    couplers: Changes<Couplers>,
+    mapping: Option<Mapping>, // of the couplers
     result: Option<String>,
     clearance: Option<String>,
     contacts: Option<String>,
@@ -92,6 +99,8 @@ impl Recorded {
             job: Changes::of(&log),
             commander: Changes::of(&log),
             controller: Changes::of(&log),
+            couplers: Changes::of(&log),
+            mapping: of_log(&log),
             result,
             clearance,
             contacts,
@@ -151,6 +160,11 @@ impl Source for Recorded {
 
     fn story(&self) -> &Story {
         &self.story
+    }
+
+    fn field(&self, picture: &Picture) -> Option<Box<FieldView>> {
+        let (mapping, couplers) = (self.mapping.as_ref()?, self.couplers.at(picture.tick)?);
+        Some(Box::new(view_of_log(picture.tick, mapping, couplers, &picture.external.devices)))
     }
 
     fn cell_text(&self) -> Option<&str> {

@@ -81,7 +81,10 @@ fn keys(model: &Model, state: State, takes_requests: bool) -> &'static [&'static
             &["Esc=back", "v=drawing, values", "j k=scroll", "[ ] { }=tick, second", "t c", "n=change"]
         }
         (Screen::Link, _) => {
-            &["Esc=back", "j k=scroll", "[ ] { }=tick, second", "c=cause", "t=trouble", "n=change", "g=tick"]
+            &["Esc=back", "v=points", "j k=scroll", "[ ] { }=tick, second", "c=cause", "t n", "g=tick"]
+        }
+        (Screen::Points, _) => {
+            &["Esc=back", "v=link", "/=names", "j k=scroll", "[ ] { }=tick, second", "t=trouble", "g=tick"]
         }
     }
 }

@@ -26,7 +26,7 @@ use record::Level;
 use crate::rcs_console::{
     model::{
         Model, Operating, Prompt, Screen, Tone, band::band as band_of, cell, ladder as lines, link, panels,
-        procedures, take_over_sections, terminal,
+        points, procedures, take_over_sections, terminal,
     },
     source::{About, Source, State},
 };
@@ -145,6 +145,10 @@ fn screen(
                 let cell = source.cell(picture.tick.0);
                 panes::column(&link::sections(picture, source.story(), &cell), model, look, width, room)
             }
+            Screen::Points => {
+                let sections = points::sections(source.field(picture).as_deref(), &model.filter, width);
+                panes::column(&sections, model, look, width, room)
+            }
             Screen::Cell if model.drawing.is_some() => {
                 let drawn =
                     model.drawing.iter().flat_map(|drawing| cell::drawn(picture, drawing, width, room));
@@ -191,11 +195,11 @@ fn tabs(screen: Screen, look: Look, width: usize) -> Line<'static> {
     let mut spans = Vec::new();
     let mut used = 0;
     for (number, tab) in (1..).zip(Screen::ALL) {
-        let mark = if tab == screen { '>' } else { ' ' };
+        let is_shown = tab == screen.tab();
+        let mark = if is_shown { '>' } else { ' ' };
         let text = format!("{mark}{number} {} ", tab.name());
         used += text.chars().count();
-        let style =
-            if tab == screen { Style::default().add_modifier(Modifier::BOLD) } else { Style::default() };
+        let style = if is_shown { Style::default().add_modifier(Modifier::BOLD) } else { Style::default() };
         spans.push(Span::styled(look.signs(text), style));
     }
     let right = if width > 90 { "?=help  q=quit " } else { "?=help " };

@@ -2,8 +2,8 @@ use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{plain::DecodeError, tick::Tick};
 
 use super::{
-    announced::starting, buffers::Readers, cell::CellView, error::SharedMemoryError, history::Headers,
-    layout::Pulse, name::RunName, place, publish::FIRST_EPOCH, runs,
+    announced::starting, buffers::Readers, cell::CellView, error::SharedMemoryError, field::FieldView,
+    history::Headers, layout::Pulse, name::RunName, place, publish::FIRST_EPOCH, runs,
 };
 
 /// Number of attempts of a reader while the writer writes, which takes some microseconds of a tick.
@@ -83,6 +83,13 @@ impl Attached {
     pub fn cell(&self) -> Result<Option<CellView>, ReadError> {
         let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
         let (_, view) = ports.readers.cell.read()?;
+        Ok((view.tick != Tick::BEFORE_START).then_some(view))
+    }
+
+    /// The couplers of a run with field I/O. Like [`Self::cell`], it may be a tick behind [`Self::memory`].
+    pub fn field(&self) -> Result<Option<FieldView>, ReadError> {
+        let ports = self.ports.as_ref().ok_or(ReadError::Busy)?;
+        let (_, view) = ports.readers.field.read()?;
         Ok((view.tick != Tick::BEFORE_START).then_some(view))
     }
 }

@@ -1,7 +1,7 @@
 //! The buffers in shared memory, service by service.
 //!
 //! Each process has a service with one slot ([`super::slot`]), its output buffers. Further services have the external
-//! inputs, the counts, the view of the cell, and the headers of the last ten seconds ([`super::history`]).
+//! inputs, the counts, the views of the cell and of the couplers, and the headers of the last ten seconds ([`super::history`]).
 
 use iceoryx2::{node::Node, prelude::ipc};
 use interfaces::{CommonMemory, ExternalInputs, for_each_process};
@@ -10,6 +10,7 @@ use rcs_core::{Plain, plain::DecodeError, tick::Tick};
 use super::{
     cell::{CELL, CellView},
     error::SharedMemoryError,
+    field::{FIELD, FieldView},
     history::{HistoryReader, HistoryWriter},
     layout::{EXECUTIVE, Epoch, OUTSIDE, Pulse},
     runs,
@@ -51,6 +52,7 @@ macro_rules! services {
             outside: SlotWriter<{ slot::size::<ExternalInputs>() }, ExternalInputs>,
             pub(super) executive: SlotWriter<{ slot::size::<Pulse>() }, Pulse>,
             pub(super) cell: SlotWriter<{ slot::size::<CellView>() }, CellView>,
+            pub(super) field: SlotWriter<{ slot::size::<FieldView>() }, FieldView>,
             history: HistoryWriter,
         }
 
@@ -61,6 +63,7 @@ macro_rules! services {
                     outside: create(node, OUTSIDE, epoch)?,
                     executive: create(node, EXECUTIVE, epoch)?,
                     cell: create(node, CELL, epoch)?,
+                    field: create(node, FIELD, epoch)?,
                     history: HistoryWriter::create(node, epoch)?,
                 })
             }
@@ -81,6 +84,7 @@ macro_rules! services {
             pub(super) outside: SlotReader<{ slot::size::<ExternalInputs>() }, ExternalInputs>,
             pub(super) executive: SlotReader<{ slot::size::<Pulse>() }, Pulse>,
             pub(super) cell: SlotReader<{ slot::size::<CellView>() }, CellView>,
+            pub(super) field: SlotReader<{ slot::size::<FieldView>() }, FieldView>,
             pub(super) history: HistoryReader,
         }
 
@@ -91,6 +95,7 @@ macro_rules! services {
                     outside: open(node, OUTSIDE, epoch)?,
                     executive: open(node, EXECUTIVE, epoch)?,
                     cell: open(node, CELL, epoch)?,
+                    field: open(node, FIELD, epoch)?,
                     history: HistoryReader::open(node, epoch)?,
                 })
             }

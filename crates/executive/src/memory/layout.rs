@@ -5,7 +5,10 @@ use std::sync::LazyLock;
 use interfaces::{ExternalInputs, Header, PROCESS_COUNT, for_each_process};
 use rcs_core::{Plain, digest::Digest, plain::FieldSchema, reflect, tick::Tick};
 
-use super::cell::{CELL, CellView};
+use super::{
+    cell::{CELL, CellView},
+    field::{FIELD, FieldView},
+};
 
 /// Epoch of a service, part of its name: the next number for a writer that replaces a killed one, because a blackboard
 /// cannot be reopened for writing while a reader holds it.
@@ -54,6 +57,7 @@ macro_rules! services {
             FieldSchema { name: EXECUTIVE, schema: Pulse::SCHEMA },
             FieldSchema { name: HISTORY, schema: AllHeaders::SCHEMA },
             FieldSchema { name: CELL, schema: CellView::SCHEMA },
+            FieldSchema { name: FIELD, schema: FieldView::SCHEMA },
         ];
     };
 }

@@ -9,6 +9,7 @@ pub mod attach;
 pub mod buffers;
 pub mod cell;
 mod error;
+pub mod field;
 pub mod history;
 pub mod layout;
 pub mod limit;

@@ -8,6 +8,7 @@ use super::{
     buffers::Writers,
     cell::CellView,
     error::SharedMemoryError,
+    field::FieldView,
     layout::{Epoch, Pulse},
     name::RunName,
     place, runs,
@@ -107,6 +108,13 @@ impl Publisher {
     pub fn show_cell(&mut self, view: &CellView) {
         if let Some(ports) = &mut self.ports {
             ports.writers.cell.write(view.tick, view);
+        }
+    }
+
+    /// Publish the couplers after a tick. Does not allocate.
+    pub fn show_field(&mut self, view: &FieldView) {
+        if let Some(ports) = &mut self.ports {
+            ports.writers.field.write(view.tick, view);
         }
     }
 }

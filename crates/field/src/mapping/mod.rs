@@ -155,6 +155,15 @@ impl InPoint {
         }
     }
 
+    /// Its value if it never changes.
+    #[must_use]
+    pub const fn fixed(&self) -> Option<i64> {
+        match self.from {
+            Origin::Slot(_) => None,
+            Origin::Fixed(value) => Some(value),
+        }
+    }
+
     /// The line from raw values to counts, if it has one for all grippers.
     #[must_use]
     pub const fn line(&self) -> Option<Line> {

@@ -17,6 +17,7 @@ use crate::{
     config::ClockKind,
     egm::EgmPort,
     event::Event,
+    field::view_of_run,
     live::Live,
     resume,
     views::{Around, commander, job_state},
@@ -77,6 +78,14 @@ impl Run {
             let (job, by) = (job_state(neighbours, waits), commander(neighbours, operator, memory));
             self.view.look(tick, robot, (&job, &by), &self.pace)
         });
+    }
+
+    /// Publish the couplers and their points after a tick to other programs.
+    pub(super) fn publish_field(&mut self, tick: Tick) {
+        let inputs = &self.closed.external().devices;
+        if let Some(desk) = self.closed.workstation.field.as_deref().map(Field::desk) {
+            self.runner.show_field(|| view_of_run(tick, desk, inputs));
+        }
     }
 
     /// The end of a command shows that the cause of an earlier stop is gone.
