@@ -320,12 +320,21 @@ pub struct IoTestArguments {
     /// Seconds for which the inputs are read
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=3600))]
     pub seconds: u32,
+    /// Only the points whose names begin with TEXT; may be repeated
+    #[arg(long, value_name = "TEXT")]
+    pub points: Vec<String>,
+    /// Test each input alone: a person works its sensor, and says in which state it is
+    #[arg(long)]
+    pub wiggle: bool,
     /// Test each output alone, after a question: it is on for a second
     #[arg(long)]
     pub outputs: bool,
     /// Measure the time from the last write to the fallback of each coupler, after a question
     #[arg(long)]
     pub watchdog: bool,
+    /// Close a gripper on a part, write nothing for 10 s, and compare opening and force: grip, v, tool or pedestal
+    #[arg(long, value_name = "GRIPPER")]
+    pub hold: Option<String>,
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
     pub json: bool,

@@ -171,3 +171,72 @@ fn calibration_prints_the_line_between_two_states() {
     let output = cell.run(&["io-calibrate", "grip.supply"], "");
     assert_eq!(output.status.code(), Some(2), "an output has no line");
 }
+
+#[test]
+fn gripper_that_loses_its_part_without_exchanges_is_named() {
+    let hold = |moves: u16| {
+        let cell = Cell::new();
+        let path = cell.mapping();
+        let mut child = start(&[
+            "io-test",
+            path.to_str().unwrap(),
+            "--seconds",
+            "1",
+            "--points",
+            "grip.",
+            "--hold",
+            "grip",
+            "--json",
+        ]);
+        child.stdin.take().unwrap().write_all(b"y\ny\n").unwrap();
+        let arm = &cell.stations[ARM];
+        // The fingers stop at the part, and move when the watchdog has switched the outputs off.
+        arm.with(|coupler| coupler.inputs_mut()[0] = 8000);
+        while child.try_wait().unwrap().is_none() && arm.with(|coupler| coupler.fallbacks()) == 0 {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        arm.with(|coupler| coupler.inputs_mut()[0] += moves);
+        let output = child.wait_with_output().unwrap();
+        (output.status.code(), json(&output)["hold"].clone(), cell.output())
+    };
+    std::thread::scope(|scope| {
+        let [keeps, loses] = [0, 400].map(|moves| scope.spawn(move || hold(moves)));
+        let (status, tally, outputs) = keeps.join().unwrap();
+        assert_eq!((status, &tally["verdict"], outputs), (Some(0), &"good".into(), 0), "{tally}");
+        let (status, tally, outputs) = loses.join().unwrap();
+        assert_eq!((status, &tally["verdict"], outputs), (Some(1), &"not-held".into(), 0), "{tally}");
+        assert_eq!(tally["note"], "grip.potentiometer has changed by 50 counts");
+    });
+}
+
+#[test]
+fn ring_with_a_gripper_is_unlocked_only_in_its_holster() {
+    let cell = Cell::new();
+    let sense = |index: usize, register: usize, word: u16| {
+        cell.stations[index].with(|coupler| coupler.inputs_mut()[register] = word);
+    };
+    let test = |cell: &Cell| {
+        let words = ["io-test", "--seconds", "1", "--points", "quick-change.unlock", "--outputs", "--json"];
+        let output = cell.run(&words, "y\ny\ny\n");
+        (output.status.code(), json(&output)["outputs"][0].clone())
+    };
+    sense(ARM, 8, 1 << 10);
+    sense(1, 2, 0x0CCC & !(1 << 6));
+    let (status, entry) = test(&cell);
+    assert_eq!((status, &entry["verdict"]), (Some(1), &"refused".into()), "{entry}");
+    assert!(entry["note"].as_str().unwrap().starts_with("holster.left.small-1 is 0"), "{entry}");
+    sense(1, 2, 0x0CCC);
+    let (status, entry) = test(&cell);
+    assert_eq!((status, &entry["verdict"]), (Some(0), &"good".into()), "{entry}");
+}
+
+#[test]
+fn outputs_that_may_hold_something_refuse_the_test_of_outputs() {
+    const TOOL_CLOSE: u16 = 1 << 11;
+    let cell = Cell::new();
+    cell.stations[ARM].with(|coupler| coupler.outputs_mut()[0] = TOOL_CLOSE);
+    let output = cell.run(&["io-test", "--seconds", "1", "--outputs"], "y\n");
+    assert_eq!((output.status.code(), cell.output()), (Some(2), TOOL_CLOSE), "{output:?}");
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(text.contains("tool.close on, and may hold something"), "{text}");
+}

@@ -7,3 +7,4 @@ mod console;
 mod database;
 mod io;
 mod odd_files;
+mod wiring;

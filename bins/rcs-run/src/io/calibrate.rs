@@ -5,7 +5,7 @@ use std::{process::ExitCode, time::Duration};
 use couplers::Mode;
 use os_io::console;
 
-use super::{Bench, wait_for_enter};
+use super::{Bench, Person};
 use crate::rcs_run::{
     arguments::IoCalibrateArguments,
     error::{Error, FAILED},
@@ -30,9 +30,10 @@ pub fn calibrate(arguments: &IoCalibrateArguments) -> Result<ExitCode, Error> {
         [first, second] => [first, second],
         _ => point.line().map_or([0.0; 2], |line| line.counts),
     };
+    let person = Person::new();
     let mut raw = [0.0; 2];
     for (value, counts) in raw.iter_mut().zip(counts) {
-        if !wait_for_enter(&format!("Bring {name} to {counts} counts"))? {
+        if !person.wait_for_enter(&format!("Bring {name} to {counts} counts"))? {
             return Err(Error::Field("the input has ended before both states were read".to_owned()));
         }
         let mut probe = bench.probe(device, Mode::Watch).map_err(|hindrance| Error::Field(hindrance.text))?;

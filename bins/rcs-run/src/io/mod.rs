@@ -1,17 +1,22 @@
 //! `rcs-run io-test`, `io-release` and `io-calibrate`: couplers over TCP without a run.
 //!
 //! Each command takes the devices of a mapping, and is refused while a run has them. A [`Probe`] is a
-//! session with a device in this thread. A question to the person lasts longer than the watchdog, so no session stays
-//! open during one.
+//! session with a device in this thread. A question to the person lasts longer than the watchdog, so no session that
+//! writes stays open during one.
 
 mod calibrate;
+mod expected;
+mod hold;
 mod outputs;
+mod person;
+mod probes;
 mod release;
 mod tally;
 mod test;
+mod watchdog;
+mod wiggle;
 
 use std::{
-    io::{self, BufRead as _, Write as _},
     thread,
     time::{Duration, Instant},
 };
@@ -28,6 +33,7 @@ use rcs_core::Plain as _;
 pub use self::{calibrate::calibrate, release::release, test::test};
 use runtime::StartError;
 
+use self::person::Person;
 use crate::rcs_run::{arguments::MappingArgument, error::Error};
 
 const PERIOD: Duration = Duration::from_millis(20); // time between two exchanges
@@ -143,27 +149,4 @@ impl Probe {
         }
         false
     }
-}
-
-/// Ask a question on standard error. Anything but `y` or `yes` is a no, also the end of the input.
-pub fn ask(question: &str) -> io::Result<bool> {
-    let mut terminal = io::stderr();
-    write!(terminal, "{question} [y/N] ")?;
-    terminal.flush()?;
-    Ok(matches!(line()?.as_str(), "y" | "yes"))
-}
-
-/// Ask for the Enter key. Returns false at the end of the input.
-pub fn wait_for_enter(text: &str) -> io::Result<bool> {
-    let mut terminal = io::stderr();
-    write!(terminal, "{text}, then press Enter: ")?;
-    terminal.flush()?;
-    let mut line = String::new();
-    Ok(io::stdin().lock().read_line(&mut line)? > 0)
-}
-
-fn line() -> io::Result<String> {
-    let mut line = String::new();
-    io::stdin().lock().read_line(&mut line)?;
-    Ok(line.trim().to_lowercase())
 }

@@ -5,7 +5,7 @@ use std::{process::ExitCode, time::Duration};
 use couplers::{Mode, State};
 use os_io::{console, stderr_line};
 
-use super::{Bench, Hindrance, ask};
+use super::{Bench, Hindrance, Person};
 use crate::rcs_run::{
     arguments::IoReleaseArguments,
     error::{Error, FAILED},
@@ -16,7 +16,7 @@ const WRITTEN_FOR: Duration = Duration::from_millis(200);
 
 /// Asks for each device that has outputs on. Exit status 0 if all have confirmed the safe outputs, 1 if not.
 pub fn release(arguments: &IoReleaseArguments) -> Result<ExitCode, Error> {
-    let bench = Bench::open(&arguments.mapping)?;
+    let (bench, person) = (Bench::open(&arguments.mapping)?, Person::new());
     let mut is_done = true;
     for (index, device) in bench.mapping.devices.iter().enumerate() {
         let name = &device.name;
@@ -33,7 +33,7 @@ pub fn release(arguments: &IoReleaseArguments) -> Result<ExitCode, Error> {
             }
         };
         stderr_line!("{name}: {on} on. A part that is held by them may fall, and air may be released.");
-        if !ask(&format!("Is the robot switched off, and shall the outputs of {name} become safe?"))? {
+        if !person.ask(&format!("Is the robot switched off, and shall the outputs of {name} become safe?"))? {
             console::answer(&format!("{name}: unchanged\n"))?;
             is_done = false;
             continue;
