@@ -19,6 +19,8 @@ use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+const TIME_LIMIT: Duration = Duration::from_secs(60); // of each action, for a busy machine
+
 struct Peer {
     master: File,
     path: PathBuf,
@@ -51,10 +53,11 @@ fn bytes(of: &[u8]) -> LinkBytes {
     bytes
 }
 
-/// Receive until `count` bytes are there, for at most a second.
+/// Receives until `count` bytes are there.
 fn received(line: &mut SerialLine, count: usize) -> LinkBytes {
     let (started, mut rx) = (Instant::now(), LinkBytes::default());
-    while usize::from(rx.length) < count && started.elapsed() < Duration::from_secs(1) {
+    while usize::from(rx.length) < count {
+        assert!(started.elapsed() < TIME_LIMIT, "{} of {count} bytes were received", rx.length);
         line.wait(Duration::from_millis(10));
         line.receive(&mut rx);
     }
@@ -117,12 +120,10 @@ fn tick_with_a_lost_port_does_not_allocate() {
 fn a_blocked_line_is_reported_and_rests_for_a_tick() {
     let peer = Peer::new();
     let mut line = peer.line();
-    let started = Instant::now();
-    // A pseudo-terminal takes some ten thousand unread bytes.
+    // A pseudo-terminal takes some ten thousand unread bytes. Nobody reads them, so a line that waits would wait forever.
     let sent = (0..2000).take_while(|_| line.send(&bytes(&[3; 64]))).count();
     assert!(sent > 0 && sent < 2000, "{sent} frames were taken");
     assert!(line.counts().unsent > 0 && line.has_unsent());
-    assert!(started.elapsed() < Duration::from_secs(5), "it has waited");
     let mut rx = LinkBytes::default();
     assert!(!line.receive(&mut rx) && line.is_there(), "the link must begin again");
     assert!(line.receive(&mut rx));
@@ -144,18 +145,18 @@ fn a_port_that_reappears_is_reopened_and_starts_clean() {
     let mut line = SerialLine::open(SerialSettings::new(&path)).unwrap();
     assert!(line.receive(&mut LinkBytes::default()));
     drop(first);
+    let lost = Instant::now();
     let mut rx = bytes(&[1, 2, 3]);
     assert!(!line.receive(&mut rx));
     assert_eq!((rx, line.is_there()), (LinkBytes::default(), false));
     let second = Peer::new();
     plug(&second);
     (&second.master).write_all(b"sent before the port was open").unwrap();
-    let started = Instant::now();
     while !line.receive(&mut rx) {
-        assert!(started.elapsed() < Duration::from_secs(5), "it was not opened again");
+        assert!(lost.elapsed() < TIME_LIMIT, "it was not opened again");
         thread::sleep(Duration::from_millis(20));
     }
-    assert!(started.elapsed() > RETRY / 2, "attempts are a second apart");
+    assert!(lost.elapsed() >= RETRY, "attempts are a second apart");
     assert_eq!(rx.length, 0);
     (&second.master).write_all(&[6]).unwrap();
     assert_eq!(received(&mut line, 1).as_slice(), &[6]);
