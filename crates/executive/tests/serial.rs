@@ -120,7 +120,7 @@ fn tick_with_a_lost_port_does_not_allocate() {
 fn a_blocked_line_is_reported_and_rests_for_a_tick() {
     let peer = Peer::new();
     let mut line = peer.line();
-    // A pseudo-terminal takes some ten thousand unread bytes. Nobody reads them, so a line that waits would wait forever.
+    // A pseudo-terminal takes some ten thousand unread bytes. A line that waits until they are read would hang.
     let sent = (0..2000).take_while(|_| line.send(&bytes(&[3; 64]))).count();
     assert!(sent > 0 && sent < 2000, "{sent} frames were taken");
     assert!(line.counts().unsent > 0 && line.has_unsent());

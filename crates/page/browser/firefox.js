@@ -5,8 +5,8 @@ import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-/** Time limit of a condition, milliseconds. */
-const PATIENCE = 30_000;
+/** Time limit of a condition on a busy machine, milliseconds. */
+const PATIENCE = 60_000;
 
 export class Firefox {
   /** @param {string} program */
