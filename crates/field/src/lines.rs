@@ -7,13 +7,16 @@
 //!                 └──────────┴──────────┴──► failed: fault, `while` lost, too late, tripped device
 //! ```
 //!
-//! A late input neither fulfils nor breaks a condition. `done` is valid only after `begun`, after `done` was off, or,
+//! [`table`] decides. A late input neither fulfils nor breaks a condition. `done` is valid only after `begun`, after `done` was off, or,
 //! without `begun`, after [`SETTLE_TICKS`], so that an input left on by the last cycle does not end a line. A line
 //! interrupted after it had begun continues without a second start. One call of [`Lines::step`] is one tick.
 
 mod failure;
+mod table;
 
 use rcs_core::tick::TICK_MS;
+
+use self::table::{Action, Cause, Devices, Done, Held, Phase, Situation, Start, Time, Watched};
 
 pub use self::failure::{Failure, Observed, Why};
 use crate::{image::Seen, mapping::Mapping};
@@ -55,13 +58,6 @@ pub struct Setting {
 #[must_use]
 pub fn normalized(line: &str) -> String {
     line.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Phase {
-    Checking, // the outputs are not set yet: an input of `needs` is late
-    Setting,  // the outputs are set; `begun` was not seen
-    Running,  // the line has begun, or has no `begun`
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,33 +160,36 @@ impl Lines {
         current.in_phase += 1;
         current.was_off |= facts.done == Held::No;
         current.held = if facts.done == Held::Yes { current.held + 1 } else { 0 };
-        match decide(&current, sequence, &facts) {
-            Decision::Wait => self.current = Some(current),
-            Decision::Set => {
-                self.write(&sequence.sets);
-                let phase = if sequence.begun.is_empty() { Phase::Running } else { Phase::Setting };
-                self.current = Some(Current { phase, in_phase: 0, held: 0, ..current });
-            }
-            Decision::Begun => {
+        let decision = table::line(current.phase, &facts.situation(&current, sequence));
+        let (before, next) = (current.phase, decision.next);
+        if next != before {
+            (current.in_phase, current.held) = (0, 0);
+        }
+        current.phase = next;
+        match decision.action {
+            Action::Wait => {}
+            Action::Set => self.write(&sequence.sets),
+            Action::Begin => {
                 self.write(&sequence.then);
-                self.current = Some(Current { phase: Phase::Running, in_phase: 0, was_off: true, ..current });
+                current.was_off = true;
             }
-            Decision::End => {
+            Action::End => {
                 self.write(&sequence.then);
                 self.current = None;
+                return;
             }
-            Decision::Fail(why) => {
-                if matches!(why, Why::Interrupted(_)) {
-                    self.interrupted = Some(current.entry);
-                }
-                self.failure = Some(Failure { line: sequence.line.clone(), why });
+            Action::Fail(cause) => {
                 self.current = None;
-                if current.phase != Phase::Checking {
+                self.interrupted = (cause == Cause::Interrupted).then_some(current.entry);
+                self.failure = Some(Failure { line: sequence.line.clone(), why: facts.why(cause, sequence) });
+                if before != Phase::Checking {
                     self.write(&sequence.then);
                     self.release(mapping, sequence);
                 }
+                return;
             }
         }
+        self.current = Some(current);
     }
 
     fn write(&mut self, settings: &[Setting]) {
@@ -210,13 +209,6 @@ impl Lines {
             }
         }
     }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Held {
-    Yes,
-    No,
-    Late, // an input is late, and no other one breaks a condition
 }
 
 #[derive(Debug)]
@@ -274,50 +266,46 @@ impl Facts {
             fault: first(&sequence.fault, true),
         }
     }
-}
 
-#[derive(Debug)]
-enum Decision {
-    Wait,
-    Set,   // write the outputs of the line
-    Begun, // the device has taken the order
-    End,
-    Fail(Why),
-}
+    fn situation(&self, current: &Current, sequence: &Sequence) -> Situation {
+        let watched =
+            |broken: &Option<Observed>| if broken.is_some() { Watched::Broken } else { Watched::Kept };
+        let limit = |ticks: u64, seconds: u16| match ticks >= u64::from(seconds) * TICKS_PER_S {
+            true => Time::Over,
+            false => Time::Left,
+        };
+        let has_settled = sequence.begun.is_empty() && current.held >= SETTLE_TICKS;
+        Situation {
+            devices: if self.tripped.is_some() { Devices::Tripped } else { Devices::Released },
+            start: if sequence.begun.is_empty() { Start::Hidden } else { Start::Shown },
+            fault: watched(&self.fault),
+            during: watched(&self.lost),
+            needs: self.needs,
+            begun: self.begun,
+            done: match self.done {
+                Held::Yes if current.was_off || has_settled => Done::Reached,
+                Held::Yes => Done::Unproven,
+                Held::No | Held::Late => Done::Missing,
+            },
+            start_time: limit(current.in_phase, sequence.begun_within_s),
+            time: limit(current.ticks, sequence.within_s),
+        }
+    }
 
-/// The rows of the diagram above; the first that applies decides.
-fn decide(current: &Current, sequence: &Sequence, facts: &Facts) -> Decision {
-    let Facts { tripped, needs, begun, done, .. } = facts;
-    let is_late = current.ticks >= u64::from(sequence.within_s) * TICKS_PER_S;
-    let begins_late = current.in_phase >= u64::from(sequence.begun_within_s) * TICKS_PER_S;
-    let has_settled = sequence.begun.is_empty() && current.held >= SETTLE_TICKS;
-    let is_done = *done == Held::Yes && (current.was_off || has_settled);
-    let missing = |observed: &Option<Observed>, why: fn(Observed) -> Why| {
-        observed.clone().map_or(Decision::Wait, |what| Decision::Fail(why(what)))
-    };
-    match (current.phase, tripped) {
-        (Phase::Checking, Some(device)) => Decision::Fail(Why::Tripped(device.clone())),
-        (Phase::Setting, Some(device)) => Decision::Fail(Why::Unknown(device.clone())),
-        (Phase::Running, Some(device)) if sequence.begun.is_empty() => {
-            Decision::Fail(Why::Tripped(device.clone()))
+    /// Names the point or the device of a failure.
+    fn why(self, cause: Cause, sequence: &Sequence) -> Why {
+        let device = self.tripped.unwrap_or_default();
+        let observed = |what: Option<Observed>| what.unwrap_or_default();
+        match cause {
+            Cause::Tripped => Why::Tripped(device),
+            Cause::Unknown => Why::Unknown(device),
+            Cause::Interrupted => Why::Interrupted(device),
+            Cause::Fault => Why::Fault(observed(self.fault)),
+            Cause::Lost => Why::Lost(observed(self.lost)),
+            Cause::Needs => Why::Needs(observed(self.missing_need)),
+            Cause::NotBegun => Why::NotBegun(observed(self.missing_begun), sequence.begun_within_s),
+            Cause::NotDone => Why::NotDone(observed(self.missing_done), sequence.within_s),
         }
-        (Phase::Running, Some(device)) => Decision::Fail(Why::Interrupted(device.clone())),
-        _ if facts.fault.is_some() => missing(&facts.fault, Why::Fault),
-        (Phase::Setting | Phase::Running, _) if facts.lost.is_some() => missing(&facts.lost, Why::Lost),
-        (Phase::Checking, _) if *needs == Held::No => missing(&facts.missing_need, Why::Needs),
-        (Phase::Checking, None) if *needs == Held::Yes => Decision::Set,
-        (Phase::Setting, _) if *begun == Held::Yes => Decision::Begun,
-        (Phase::Setting | Phase::Running, _) if is_done => Decision::End,
-        (Phase::Setting, _) if begins_late => {
-            let late = |what| Decision::Fail(Why::NotBegun(what, sequence.begun_within_s));
-            facts.missing_begun.clone().map_or(Decision::Wait, late)
-        }
-        (Phase::Checking, _) if is_late => missing(&facts.missing_need, Why::Needs),
-        _ if is_late => {
-            let late = |what| Decision::Fail(Why::NotDone(what, sequence.within_s));
-            facts.missing_done.clone().map_or(Decision::Wait, late)
-        }
-        _ => Decision::Wait,
     }
 }
 

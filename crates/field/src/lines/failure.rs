@@ -23,7 +23,7 @@ pub enum Why {
     Tripped(String),     // this device is tripped; the line can begin again
 }
 
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Observed {
     pub point: String,
     pub found: Option<i64>, // `None`: not read in time
