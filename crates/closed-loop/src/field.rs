@@ -12,14 +12,15 @@
 mod desk;
 mod event;
 mod hold;
+mod without_current;
 
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use couplers::{Emulated, InWords, MS, OutWords, PlanError, Simulated, State};
 use field::{Mapping, SAFETY};
 use interfaces::{DeviceInputs, DeviceOutputs};
 use plant::{
-    Cell,
+    Cell, CellDescription,
     devices::{DeviceError, Devices},
 };
 use rcs_core::{
@@ -27,11 +28,13 @@ use rcs_core::{
     tick::{TICK_MS, Tick},
 };
 
+use self::without_current::{Power, fall_back};
 pub use self::{
     desk::Desk,
     event::{FieldEvent, Happened},
     hold::FoundOutputs,
 };
+use crate::devices;
 
 const SET_UP_MS: u64 = 2000; // simulated time before the first tick, for the set-up of the devices, ms
 const EXCHANGES_MS: [u64; 2] = [1, TICK_MS - 8]; // times of the two exchanges after a slot, ms
@@ -60,24 +63,33 @@ impl Field {
     #[must_use]
     pub const fn desk(&self) -> &Desk {
         match self {
-            Self::Simulated(field) => &field.desk,
+            Self::Simulated(field) => field.desk(),
             Self::External(desk) => desk,
         }
     }
 
     pub const fn desk_mut(&mut self) -> &mut Desk {
         match self {
-            Self::Simulated(field) => &mut field.desk,
+            Self::Simulated(field) => field.desk_mut(),
             Self::External(desk) => desk,
         }
     }
+}
+
+#[derive(Clone, Debug, Default)]
+struct Cut {
+    by_fault: bool,
+    times: Range<u64>, // ns
 }
 
 #[derive(Clone, Debug)]
 pub struct SimulatedField {
     desk: Desk,
     simulated: Vec<Simulated>,
-    now: u64,
+    power: Vec<Power>, // of the valves of each device
+    /// Cuts of the connection of each device: by a fault of the cell, and by [`cut`](Self::cut).
+    cuts: Vec<Cut>,
+    now: u64, // time of the last observation, ns: that of the next slot
     /// Vise, machines, drum and trays behind the couplers.
     devices: Option<Box<Devices>>,
     /// The values of the mapping's outputs that arrive at these devices, and those of its inputs from their sensors.
@@ -92,8 +104,10 @@ impl SimulatedField {
         let arrived = vec![0; mapping.outputs.len()];
         // Without devices the safety circuit is closed.
         let sensed = mapping.inputs.iter().map(|point| i64::from(point.name == SAFETY)).collect();
+        let cuts = vec![Cut::default(); mapping.devices.len()];
+        let power = vec![Power::default(); mapping.devices.len()];
         let desk = Desk::new(mapping);
-        let mut field = Self { desk, simulated, now: 0, devices: None, arrived, sensed };
+        let mut field = Self { desk, simulated, power, cuts, now: 0, devices: None, arrived, sensed };
         field.sense(inputs);
         for tick in 0..SET_UP_MS / TICK_MS {
             for offset in EXCHANGES_MS {
@@ -110,11 +124,18 @@ impl SimulatedField {
         Ok(field)
     }
 
-    #[must_use]
-    pub fn with_devices(mut self, devices: Devices, cell: &Cell) -> Self {
-        devices.sense(cell, &mut self.sensed);
-        self.devices = Some(Box::new(devices));
-        self
+    /// The couplers of a mapping between the controller and a simulated cell with its devices. Fails if the cell does
+    /// not have the devices, or if they cannot be simulated.
+    pub fn of_cell(
+        mapping: Arc<Mapping>,
+        description: &CellDescription,
+        cell: &Cell,
+    ) -> Result<Self, FieldError> {
+        let devices = devices::simulated(&mapping, description)?;
+        let mut field = Self::new(mapping, &cell.inputs())?;
+        devices.sense(cell, &mut field.sensed);
+        field.devices = Some(Box::new(devices));
+        Ok(field)
     }
 
     /// Uses the outputs that have arrived. Call it between [`write`](Self::write) and the tick of the cell.
@@ -123,6 +144,9 @@ impl SimulatedField {
         self.desk.mapping().spread_station(&images, &mut self.arrived);
         if let Some(devices) = &mut self.devices {
             devices.follow(cell, &self.arrived);
+            for message in devices.messages() {
+                self.desk.note_message(message);
+            }
         }
     }
 
@@ -133,11 +157,26 @@ impl SimulatedField {
         }
     }
 
-    pub fn messages(&mut self) -> Vec<String> {
-        self.devices.as_mut().map(|devices| devices.messages()).unwrap_or_default()
+    #[must_use]
+    pub const fn desk(&self) -> &Desk {
+        &self.desk
     }
 
-    fn images(&self) -> Vec<OutWords> {
+    pub const fn desk_mut(&mut self) -> &mut Desk {
+        &mut self.desk
+    }
+
+    /// Cuts the connection of a device for `ms`, from `after_ms` after the next slot on. Returns false for an unknown
+    /// name.
+    pub fn cut(&mut self, name: &str, after_ms: u64, ms: u64) -> bool {
+        let from = self.now.saturating_add(after_ms * MS);
+        let cut = self.desk.mapping().device(name).and_then(|device| self.cuts.get_mut(device));
+        cut.map(|cut| cut.times = from..from.saturating_add(ms * MS)).is_some()
+    }
+
+    /// The outputs of the couplers as they are now, in the order of the devices.
+    #[must_use]
+    pub fn images(&self) -> Vec<OutWords> {
         let devices = &self.desk.mapping().devices;
         let couplers = self.simulated.iter().zip(devices);
         couplers.map(|(simulated, planned)| simulated.coupler().image(&planned.plan)).collect()
@@ -152,12 +191,16 @@ impl SimulatedField {
     ) -> DeviceOutputs {
         let slot = SET_UP_MS + tick.0.saturating_mul(TICK_MS);
         self.desk.order(tick, outputs);
-        for (simulated, planned) in self.simulated.iter_mut().zip(&self.desk.mapping().devices) {
-            simulated.cut(is_cut(&planned.name));
+        for (cut, planned) in self.cuts.iter_mut().zip(&self.desk.mapping().devices) {
+            cut.by_fault = is_cut(&planned.name);
         }
         self.exchange((slot + EXCHANGES_MS[0]) * MS);
         let mut arriving = *outputs;
         self.desk.mapping().spread(&self.images(), &mut arriving);
+        for (power, simulated) in self.power.iter_mut().zip(&self.simulated) {
+            power.note(simulated.coupler(), simulated.report());
+        }
+        fall_back(self.desk.mapping(), &self.power, &mut arriving);
         arriving
     }
 
@@ -195,7 +238,9 @@ impl SimulatedField {
     }
 
     fn exchange(&mut self, now: u64) {
-        for (simulated, orders) in self.simulated.iter_mut().zip(self.desk.orders()) {
+        let cuts = self.cuts.iter().map(|cut| cut.by_fault || cut.times.contains(&now));
+        for ((simulated, orders), is_cut) in self.simulated.iter_mut().zip(self.desk.orders()).zip(cuts) {
+            simulated.cut(is_cut);
             simulated.exchange(now, orders);
         }
     }

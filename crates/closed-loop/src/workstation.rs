@@ -1,5 +1,6 @@
 //! The workstation of the simulated cell, behind the interface of the workstation controller's emulator.
 
+use field::Failure;
 use interfaces::station::{Key, ViseOpening};
 use neighbours::workstation::player::Workstation;
 use plant::{
@@ -143,17 +144,31 @@ impl SimulatedWorkstation {
         Ok(!(is_simulated && matches!(action, Action::Tray { .. })))
     }
 
+    /// The failure of a line that devices executed, in the tick in which it fails.
+    #[must_use]
+    pub fn line_failure(&self) -> Option<&Failure> {
+        self.field.as_deref().and_then(|field| field.desk().lines().failure())
+    }
+
     fn is_executed_by_devices(&self) -> bool {
         self.field.as_deref().is_some_and(|field| field.desk().lines().is_busy())
     }
 
     fn translate(&self, action: &Action) -> Result<Vec<WorkstationAction>, String> {
-        let at_the_robot = matches!(action, Action::Press(_) | Action::Release(_) | Action::Panel(_));
-        if at_the_robot && self.state.robot_elsewhere {
-            return Err("the robot at the serial port has its own panel and emergency stops".to_owned());
+        if is_at_robot(action) && self.state.robot_elsewhere {
+            return Err(OWN_PANEL.to_owned());
         }
         orders(action, self.cell.description()).map_err(|error| error.to_string())
     }
+}
+
+/// Why an action at the robot is refused if the robot is not the simulated one.
+pub const OWN_PANEL: &str = "the robot has its own panel and emergency stops: operate them by hand";
+
+/// True for a key of the robot's panel, or one of its emergency stops.
+#[must_use]
+pub const fn is_at_robot(action: &Action) -> bool {
+    matches!(action, Action::Press(_) | Action::Release(_) | Action::Panel(_))
 }
 
 /// Actions in order. Fails if the cell has no such vise; the cell itself checks all other names.
@@ -227,8 +242,7 @@ impl Workstation for SimulatedWorkstation {
     }
 
     fn fault(&self) -> Option<String> {
-        let failure = self.field.as_deref().and_then(|field| field.desk().lines().failure());
-        self.state.fault.clone().or_else(|| failure.map(ToString::to_string))
+        self.state.fault.clone().or_else(|| self.line_failure().map(ToString::to_string))
     }
 
     fn emergency(&self) -> Option<String> {

@@ -28,6 +28,6 @@ mod scale;
 pub use self::{
     image::{SAFETY, Seen},
     lines::{Condition, Failure, Lines, Sequence, Setting, Why, outputs_after},
-    mapping::{Device, InPoint, Mapping, OutPoint, Presence, Target},
+    mapping::{Device, Holds, InPoint, Mapping, OutPoint, Presence, Target},
     scale::{Format, Line},
 };

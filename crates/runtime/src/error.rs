@@ -48,6 +48,8 @@ pub enum StartError {
     Field(#[from] closed_loop::field::FieldError),
     #[error("the mapping of --field cannot execute the job: {}", .0.join("; "))]
     LinesWithoutDevices(Vec<String>),
+    #[error("the robot is not the simulated one, and the job operates its panel: {}", .0.join("; "))]
+    PanelElsewhere(Vec<String>),
     /// Couplers over TCP need a clock in real time.
     #[error(
         "couplers over TCP need real time: add --clock real, or use --field sim:NAME for emulated couplers"

@@ -3,7 +3,7 @@
 mod port;
 mod view;
 
-use std::path::Path;
+use std::{borrow::Borrow, path::Path};
 
 use closed_loop::devices;
 use diagnostics::{FIELDS, Source};
@@ -117,7 +117,11 @@ fn carries(mapping: &Mapping, group: Group) -> bool {
 pub fn introduction(config: &RunConfig, mapping: &Mapping) -> Vec<String> {
     let (through, beside): (Vec<Group>, Vec<Group>) =
         Group::ALL.into_iter().partition(|group| carries(mapping, *group));
-    let names = |groups: &[Group]| listed(&groups.iter().map(|group| group.name()).collect::<Vec<_>>());
+    let name = |group: &Group| match mapping.presence(*group) {
+        presence @ (Presence::Fixed | Presence::Absent) => format!("{} ({})", group.name(), presence.name()),
+        Presence::Mapped | Presence::Simulated => group.name().to_owned(),
+    };
+    let names = |groups: &[Group]| listed(&groups.iter().map(name).collect::<Vec<_>>());
     let (through, beside) = (names(&through), names(&beside));
     if !config.has_real_devices() {
         let devices: Vec<&str> = mapping.devices.iter().map(|device| device.name.as_str()).collect();
@@ -138,6 +142,6 @@ pub fn introduction(config: &RunConfig, mapping: &Mapping) -> Vec<String> {
     ]
 }
 
-fn listed(names: &[&str]) -> String {
+fn listed<T: Borrow<str>>(names: &[T]) -> String {
     if names.is_empty() { "nothing".to_owned() } else { names.join(", ") }
 }

@@ -8,7 +8,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use closed_loop::RobotInputs;
+use closed_loop::{
+    RobotInputs,
+    workstation::{OWN_PANEL, is_at_robot},
+};
 use depc::{Plate, warning::Warning, wire::FRAME_BYTES};
 use executive::{
     alloc::Section,
@@ -18,10 +21,23 @@ use executive::{
 use geometry::{frame::Frame, pose::WireFrame};
 use interfaces::device::{DeviceOutputs, LinkBytes};
 use rcs_core::tick::TICK_MS;
+use taskdata::load::{Job, Step};
 
-use crate::{config::RunConfig, egm::EgmPort, observer::Observer, own::OwnPort};
+use crate::{config::RunConfig, egm::EgmPort, error::StartError, observer::Observer, own::OwnPort};
 
 const PERIOD: Duration = Duration::from_millis(TICK_MS); // length of a tick
+
+/// Checks that a job leaves the panel of a robot alone that is not the simulated one. Errors:
+/// [`StartError::PanelElsewhere`].
+pub fn check_panel(job: &Job) -> Result<(), StartError> {
+    let is_refused = |step: &Step| match step {
+        Step::Workstation(action) | Step::After { action, .. } => is_at_robot(action),
+        Step::Command(_) => false,
+    };
+    let lines = job.steps.iter().filter(|line| is_refused(&line.step));
+    let lines: Vec<String> = lines.map(|line| format!("`{}`: {OWN_PANEL}", line.text)).collect();
+    if lines.is_empty() { Ok(()) } else { Err(StartError::PanelElsewhere(lines)) }
+}
 
 pub enum Robot {
     Simulated,

@@ -7,8 +7,8 @@ use std::{
 };
 
 use closed_loop::{
-    JobPlayer, devices,
-    field::{Field, FieldError, SimulatedField},
+    JobPlayer,
+    field::{Field, SimulatedField},
 };
 use depc::fault::Plan;
 use diagnostics::JOBS;
@@ -119,6 +119,9 @@ impl Setup {
         if let Some(mapping) = &mapping {
             crate::field::check_job(mapping, &job)?;
         }
+        if config.robot.kind != RobotKind::Sim {
+            crate::robot::check_panel(&job)?;
+        }
         for line in mapping.iter().flat_map(|mapping| crate::field::introduction(config, mapping)) {
             observer.message(&line);
         }
@@ -150,9 +153,8 @@ impl Setup {
         let field = match mapping {
             Some(mapping) if config.has_real_devices() => Some(Couplers::Tcp(FieldPort::open(mapping)?)),
             Some(mapping) => {
-                let devices = devices::simulated(&mapping, &description).map_err(FieldError::from)?;
-                let field = SimulatedField::new(Arc::new(mapping), &cell.inputs())?;
-                Some(Couplers::Simulated(Box::new(field.with_devices(devices, &cell))))
+                let field = SimulatedField::of_cell(Arc::new(mapping), &description, &cell)?;
+                Some(Couplers::Simulated(Box::new(field)))
             }
             None => None,
         };

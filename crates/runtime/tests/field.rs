@@ -7,8 +7,12 @@ use std::{
     sync::{Arc, Mutex},
 };
 
+use field::Presence;
+use interfaces::point::{Group, Point};
 use rcs_core::tick::Tick;
-use runtime::{Ending, Event, FieldConfig, LogTarget, Observer, Run, RunConfig, RunOutcome, StartError};
+use runtime::{
+    ClockKind, Ending, Event, FieldConfig, LogTarget, Observer, Run, RunConfig, RunOutcome, StartError,
+};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
 /// Event codes of a lost part or gripper.
@@ -133,6 +137,23 @@ fn job_with_a_line_without_an_entry_is_refused() {
 }
 
 #[test]
+fn job_at_the_panel_of_another_robot_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let job = directory.path().join("panel.job");
+    fs::write(&job, "** panel fault-reset\n** after 2 estop pedestal\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n")
+        .unwrap();
+    let config = RunConfig {
+        job: job.display().to_string(),
+        field: None,
+        robot: "egm:6510".parse().unwrap(),
+        ..config()
+    };
+    let refused = Run::new(config, Box::new(())).err().unwrap();
+    assert!(matches!(&refused, StartError::PanelElsewhere(lines) if lines.len() == 2), "{refused}");
+    assert!(refused.to_string().contains("`** panel fault-reset`: the robot has its own panel"), "{refused}");
+}
+
+#[test]
 fn trip_during_machining_ends_the_run_without_a_second_start() {
     let undisturbed = Run::new(config(), Box::new(())).unwrap().complete();
     let machining = undisturbed.steps.iter().find(|step| step.text.contains("machine")).unwrap();
@@ -181,6 +202,88 @@ fn long_cuts_wait_for_an_operator_and_drop_nothing() {
         assert!(account.is_stopped(), "stopped devices are not a failure of the job: {account}");
         assert!(account.first.text.contains("grip.potentiometer"), "the held readings: {account}");
     }
+}
+
+/// The points of a group, or all of a workstation's group, in the shipped mapping, replaced by one of these words.
+fn with_group(text: &str, group: Group, presence: Presence) -> String {
+    let is_of = |point: Option<Point<'_>>| point.is_some_and(|point| point.group() == group);
+    let (points, lines) = text.split_once("\n[[line]]").unwrap();
+    let mut changed = String::new();
+    for line in points.lines() {
+        let name = line.strip_prefix('"').and_then(|line| line.split('"').next()).unwrap_or_default();
+        let (is_input, is_output) = (is_of(Point::read(name)), is_of(Point::written(name)));
+        let is_read = is_input && !line.contains("holding");
+        if line == "[out]" && presence != Presence::Fixed {
+            writeln!(changed, "[groups]\n{} = \"{}\"\n", group.name(), presence.name()).unwrap();
+        }
+        if is_read && presence == Presence::Fixed {
+            writeln!(changed, "\"{name}\" = {{ fixed = {} }}", u8::from(group == Group::Supply)).unwrap();
+        } else if !(is_read || is_output) {
+            writeln!(changed, "{line}").unwrap();
+        }
+    }
+    let word = if group == Group::Trays { "tray" } else { group.name() };
+    let others = lines.split("\n[[line]]").filter(|line| {
+        ![format!("\"{word}."), format!("\"!{word}."), format!("\"{word} ")]
+            .iter()
+            .any(|of| line.contains(of))
+    });
+    for line in others {
+        writeln!(changed, "\n[[line]]{line}").unwrap();
+    }
+    changed
+}
+
+#[test]
+fn every_group_can_be_simulated_fixed_or_absent_and_the_start_says_so() {
+    let text = fs::read_to_string(Path::new(DATA).join("field/station.toml")).unwrap();
+    // The entry of the machine needs the vise.
+    let needed = |group, presence| match group {
+        Group::Vise => true,
+        Group::Machine | Group::Trays => presence != Presence::Simulated,
+        _ => false,
+    };
+    for group in Group::ALL {
+        for presence in [Presence::Simulated, Presence::Absent, Presence::Fixed] {
+            let has_inputs = ![Group::V, Group::Vision].contains(&group);
+            if (presence == Presence::Fixed && !has_inputs) || group == Group::Vision {
+                continue;
+            }
+            let case = format!("{} {}", group.name(), presence.name());
+            let (_directory, field) = mapping(|_| with_group(&text, group, presence));
+            let read = runtime::field::read(&field.mapping).unwrap_or_else(|error| panic!("{case}: {error}"));
+            assert_eq!(read.presence(group), presence, "{case}");
+            let config = RunConfig { field: Some(field), ..config() };
+            let said = runtime::field::introduction(&config, &read).join(" ");
+            let (through, beside) = said.split_once("; not through them: ").unwrap();
+            let expected = match presence {
+                Presence::Simulated => group.name().to_owned(),
+                other => format!("{} ({})", group.name(), other.name()),
+            };
+            let part = if presence == Presence::Simulated { beside } else { through };
+            assert!(part.split([',', ';', ':']).any(|word| word.trim() == expected), "{case}: {said}");
+            let refused = Run::new(config, Box::new(())).err();
+            assert_eq!(refused.is_some(), needed(group, presence), "{case}: {refused:?}");
+        }
+    }
+}
+
+/// A log of a run with two cuts, one of which trips its device.
+#[test]
+fn log_with_a_trip_replays_without_devices() {
+    let directory = tempfile::tempdir().unwrap();
+    let faults = directory.path().join("cuts.toml");
+    let cut = |device, at, ticks| {
+        format!("[[fault]]\nkind = \"field-cut\"\ndevice = \"{device}\"\nat = {at}\nticks = {ticks}\n")
+    };
+    fs::write(&faults, cut("arm", 500, 5) + &cut("fixture", 700, 15)).unwrap();
+    let log = directory.path().join("run.mcap");
+    let config = RunConfig { log: LogTarget::File(log.clone()), faults: Some(faults), ..config() };
+    let codes = Codes::default();
+    let outcome = Run::new(config, Box::new(codes.clone())).unwrap().complete();
+    assert_eq!((codes.count("io.back"), codes.count("io.tripped")), (1, 1), "{}", failure(&outcome));
+    let report = record::replay(&log).unwrap();
+    assert!(report.is_same() && report.ticks > 700, "{report:?}");
 }
 
 #[test]

@@ -35,6 +35,7 @@ pub struct Desk {
 }
 
 const OPERATOR: &str = "operator"; // name of the person who is asked, in events
+const WORKSTATION: &str = "workstation"; // name of the simulated devices, in events
 
 impl Desk {
     /// Couplers that are being set up: nothing is written yet.
@@ -204,6 +205,12 @@ impl Desk {
         let asks = self.lines.news().map(Happened::Asks);
         let held = Vec::new();
         self.events.extend(asks.map(|what| FieldEvent { device: OPERATOR.to_owned(), what, held }));
+    }
+
+    /// Notes a message of a simulated device of the workstation.
+    pub(super) fn note_message(&mut self, text: String) {
+        let what = Happened::Message(text);
+        self.events.push(FieldEvent { device: WORKSTATION.to_owned(), what, held: Vec::new() });
     }
 
     pub fn take_events(&mut self) -> Vec<FieldEvent> {

@@ -19,7 +19,8 @@ pub enum Happened {
     Released,
     /// An output that must be off at rest is commanded, the device does not answer, or the safety circuit is open.
     Refused,
-    Asks(String), // a line of the job needs a person
+    Asks(String),    // a line of the job needs a person
+    Message(String), // of a simulated device of the workstation
     /// The run has ended.
     Ended {
         is_confirmed: bool, // the device has confirmed its last outputs
@@ -37,6 +38,7 @@ impl FieldEvent {
             Happened::Released => "io.released",
             Happened::Refused => "io.refused",
             Happened::Asks(_) => "io.asks",
+            Happened::Message(_) => "io.message",
             Happened::Ended { .. } => "io.ended",
         }
     }
@@ -70,6 +72,7 @@ impl fmt::Display for FieldEvent {
                  safety circuit is open"
             ),
             Happened::Asks(request) => write!(f, "the job waits until a person has done this: {request}"),
+            Happened::Message(text) => f.write_str(text),
             Happened::Ended { is_confirmed: true, on } if on.is_empty() => {
                 write!(f, "{device} has confirmed that its outputs are safe")
             }

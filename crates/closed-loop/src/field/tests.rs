@@ -156,6 +156,37 @@ fn of_kind(text: &str, kind: &str, fallback: &str, watchdog: &str) -> String {
     text
 }
 
+/// A mapping with these entries of `[holds]`.
+fn with_holds(text: &str, holds: &str) -> String {
+    text.replacen("\n[out]\n", &format!("\n[holds]\n{holds}\n[out]\n"), 1)
+}
+
+#[test]
+fn gripper_without_current_does_as_the_mapping_says() {
+    let at_rest = DeviceOutputs::default();
+    for (holds, grip, tool) in [
+        ("grip = \"trapped-air\"\ntool = \"check-valve\"\n", 0, [false, false]),
+        ("grip = \"spring\"\ntool = \"spring\"\n", valve::SUPPLY | valve::CLOSE_COARSE, [true, false]),
+        ("grip = \"nothing\"\ntool = \"nothing\"\n", valve::SUPPLY | valve::OPEN_COARSE, [false, true]),
+    ] {
+        let mut bench = Bench { field: changed(|text| with_holds(&text, holds)), tick: 0 };
+        let state = |(valves, _): (DeviceOutputs, _)| {
+            (valves.grip.bits, [valves.tool_grip.close, valves.tool_grip.open])
+        };
+        bench.steps(10, &closing(), "");
+        assert_eq!(
+            state(bench.steps(5, &at_rest, "")),
+            (0, [false, false]),
+            "{holds} off in normal operation"
+        );
+        assert_eq!(state(bench.steps(10, &at_rest, "arm")), (0, [false, false]), "{holds} late");
+        assert_eq!(state(bench.steps(40, &at_rest, "arm")), (grip, tool), "{holds} after the fallback");
+        assert_eq!(state(bench.steps(25, &at_rest, "")), (grip, tool), "{holds} tripped");
+        assert!(bench.field.desk.release("arm"));
+        assert_eq!(state(bench.steps(3, &at_rest, "")), (0, [false, false]), "{holds} released");
+    }
+}
+
 #[test]
 fn copy_continues_alike() {
     let mut bench = Bench::new();

@@ -50,7 +50,7 @@ pub(super) fn build(sheet: &Sheet, stand_ins: &StandIns, problems: &mut Problems
     }
     devices.lay_out(&taken, &mut inputs, &taken_out, &mut outputs, problems);
     let presence = groups::presence(sheet, stand_ins, problems);
-    groups::check_holds(sheet, stand_ins, problems);
+    let holds = groups::holds(sheet, stand_ins, problems);
     let lines = lines::lines(sheet, stand_ins, &inputs, &outputs, problems);
-    Mapping { name: sheet.name.clone(), devices: devices.list, inputs, outputs, presence, lines }
+    Mapping { name: sheet.name.clone(), devices: devices.list, inputs, outputs, presence, lines, holds }
 }

@@ -66,7 +66,8 @@ pub struct Mapping {
     pub devices: Vec<Device>, // the devices, in the order of their names
     pub inputs: Vec<InPoint>,
     pub outputs: Vec<OutPoint>,
-    pub lines: Vec<Sequence>, // how the devices execute lines of jobs
+    pub lines: Vec<Sequence>,       // how the devices execute lines of jobs
+    pub holds: Vec<(Group, Holds)>, // what keeps a part gripped while the outputs of a group are off
     /// How each group of devices is present, in the order of [`Group::ALL`].
     presence: [Presence; Group::ALL.len()],
 }
@@ -97,6 +98,33 @@ impl Presence {
             Self::Fixed => "fixed",
             Self::Absent => "absent",
             Self::Simulated => "simulated",
+        }
+    }
+}
+
+/// What keeps a part gripped while the output is off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Holds {
+    TrappedAir,
+    CheckValve,
+    Bistable,
+    Spring,  // closes the fingers
+    Nothing, // the fingers open
+}
+
+impl Holds {
+    pub const ALL: [Self; 5] =
+        [Self::TrappedAir, Self::CheckValve, Self::Bistable, Self::Spring, Self::Nothing];
+
+    /// Its word in mapping files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::TrappedAir => "trapped-air",
+            Self::CheckValve => "check-valve",
+            Self::Bistable => "bistable",
+            Self::Spring => "spring",
+            Self::Nothing => "nothing",
         }
     }
 }
@@ -196,6 +224,11 @@ pub struct OutPoint {
 }
 
 impl OutPoint {
+    #[must_use]
+    pub fn is_of(&self, group: Group) -> bool {
+        self.group == group
+    }
+
     /// True for an output to vise, machine or drum.
     pub(crate) const fn is_station(&self) -> bool {
         matches!(self.target, Target::Station)
@@ -240,6 +273,7 @@ impl Mapping {
             inputs: Vec::new(),
             outputs: Vec::new(),
             lines: Vec::new(),
+            holds: Vec::new(),
             presence: [Presence::Simulated; Group::ALL.len()],
         }
     }

@@ -9,12 +9,10 @@ use diagnostics::{
 use interfaces::point::{Group, Input, Kind, Output, Point, Station};
 
 use super::{
-    super::{Presence, form::Sheet},
+    super::{Holds, Presence, form::Sheet},
     says, unlike,
 };
 
-/// What keeps a part gripped while the output is off.
-const HOLDS: [&str; 5] = ["trapped-air", "check-valve", "bistable", "spring", "nothing"];
 const HOLDERS: [Group; 6] = [Group::Grip, Group::V, Group::Tool, Group::Pedestal, Group::Vise, Group::Drum];
 /// Words for groups without points.
 const WITHOUT: [Presence; 2] = [Presence::Absent, Presence::Simulated];
@@ -67,27 +65,36 @@ pub(super) fn presence(
     })
 }
 
-/// Checks the entries that say what keeps a part gripped while the output is off.
-pub(super) fn check_holds(sheet: &Sheet, stand_ins: &StandIns, problems: &mut Problems) {
-    for (name, holds) in &sheet.holds {
+/// What keeps a part gripped while the outputs of a group are off, as the file says.
+pub(super) fn holds(sheet: &Sheet, stand_ins: &StandIns, problems: &mut Problems) -> Vec<(Group, Holds)> {
+    let groups = HOLDERS.map(Group::name);
+    let words = Holds::ALL.map(Holds::name);
+    let mut all = Vec::new();
+    for (name, word) in &sheet.holds {
         let path = join("holds", name);
         if !stand_ins.trusts(&path) {
             continue;
         }
-        let known = HOLDERS.map(Group::name);
-        if !known.contains(&name.as_str()) {
-            let expected = format!("one of {}", known.join(", "));
-            problems.add(unlike(&path, expected, format_args!("{name:?}")).near(name, &known));
-        } else if !HOLDS.contains(&holds.as_str()) {
-            let expected = format!("one of {}", HOLDS.join(", "));
-            problems.add(unlike(&path, expected, format_args!("{holds:?}")).near(holds, &HOLDS));
-        } else if ["vise", "drum"].contains(&name.as_str())
-            && ["nothing", "trapped-air"].contains(&holds.as_str())
-        {
-            let expected = "bistable, check-valve or spring: a part must stay clamped when its output is off";
-            problems.add(unlike(&path, expected, format_args!("{holds:?}")));
+        let group = HOLDERS.into_iter().find(|group| group.name() == name);
+        let holds = Holds::ALL.into_iter().find(|holds| holds.name() == word);
+        match (group, holds) {
+            (None, _) => {
+                let expected = format!("one of {}", groups.join(", "));
+                problems.add(unlike(&path, expected, format_args!("{name:?}")).near(name, &groups));
+            }
+            (Some(_), None) => {
+                let expected = format!("one of {}", words.join(", "));
+                problems.add(unlike(&path, expected, format_args!("{word:?}")).near(word, &words));
+            }
+            (Some(Group::Vise | Group::Drum), Some(Holds::Nothing | Holds::TrappedAir)) => {
+                let expected =
+                    "bistable, check-valve or spring: a part must stay clamped when its output is off";
+                problems.add(unlike(&path, expected, format_args!("{word:?}")));
+            }
+            (Some(group), Some(holds)) => all.push((group, holds)),
         }
     }
+    all
 }
 
 /// The names of the file's points of a group.
