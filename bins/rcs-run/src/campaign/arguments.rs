@@ -8,6 +8,7 @@ use clap::{
     builder::{ArgPredicate, StringValueParser},
 };
 use diagnostics::FAULTS;
+use runtime::FieldConfig;
 
 use super::{interruption::first_words, operator::Recovery, trial::Until};
 
@@ -23,10 +24,14 @@ pub struct CampaignArguments {
     /// Seed of the cell's sensor noise and of the positions of delivered parts
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// Put emulated couplers between the controller and the cell, as mapped by sim:NAME or sim:FILE (docs/field.md)
+    #[arg(long, value_name = "sim:NAME")]
+    pub field: Option<FieldConfig>,
     /// Interruptions, separated by commas: pause, pause-twice, refused, replaced, answer-lost, answer-late,
     /// answer-damaged, hold, nudge, away, estop, power, held or held:PROCESS, restart or restart:PROCESS, fault or
     /// fault:FILE, none or all; jog:X:Y:Z (0.01 in), take:PART, move:PART:X:Y, swap:PART:KIND, add:KIND:PLACE:SECTOR,
-    /// each with :next or :again for the next command or the one before; with --judge rest also cut, lost or
+    /// each with :next or :again for the next command or the one before; with --field also
+    /// outage:DEVICE[/DEVICE][:SECONDS], where robot is the line to the robot controller; with --judge rest also cut, lost or
     /// lost:PROCESS; hold+35:pause is hold, and pause 35 ticks after it [with --random: all]
     #[arg(
         long,
@@ -60,6 +65,9 @@ pub struct CampaignArguments {
     /// Fork at the first tick of each state of the control processes: their steps, and the rows that they fired last
     #[arg(long, conflicts_with_all = ["ticks", "changes", "at", "random"])]
     pub states: bool,
+    /// Fork at every so many of the ticks within 10 of a change of an output
+    #[arg(long, value_name = "EVERY", conflicts_with_all = ["ticks", "changes", "at", "states", "random"], value_parser = clap::value_parser!(u64).range(1..))]
+    pub outputs: Option<u64>,
     /// Fork at these ticks; one tick with one interruption prints the whole branch
     #[arg(long, value_name = "N", value_delimiter = ',', conflicts_with_all = ["ticks", "changes"])]
     pub at: Vec<u64>,

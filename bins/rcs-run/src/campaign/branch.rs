@@ -8,7 +8,12 @@ use std::{
     sync::Arc,
 };
 
-use closed_loop::{ClosedLoop, CommandBox, Commander, Present, Settled, truth::Confirmation};
+use closed_loop::{
+    ClosedLoop, CommandBox, Commander, Present, Settled,
+    field::{Field, FieldEvent, SimulatedField},
+    truth::Confirmation,
+};
+use field::Mapping;
 use interfaces::{CommonMemory, HwsCommand};
 use levels::ladder::LadderState;
 use neighbours::data_system::Item;
@@ -28,13 +33,20 @@ pub struct Facility {
     pub reloads: Arc<Vec<Reload>>,
     pub description: CellDescription,
     pub seed: u64,
+    /// The emulated couplers between controller and cell, if any.
+    pub mapping: Option<Arc<Mapping>>,
 }
 
 impl Facility {
     #[must_use]
     pub fn new(store: Store, mut job: Job, description: CellDescription, seed: u64) -> Self {
         let reloads = Arc::new(std::mem::take(&mut job.reloads));
-        Self { store: Arc::new(store), job, reloads, description, seed }
+        Self { store: Arc::new(store), job, reloads, description, seed, mapping: None }
+    }
+
+    #[must_use]
+    pub fn with_mapping(self, mapping: Option<Mapping>) -> Self {
+        Self { mapping: mapping.map(Arc::new), ..self }
     }
 }
 
@@ -46,6 +58,7 @@ pub struct Branch<'f> {
     command_box: CommandBox,
     pub events: Vec<CellEvent>,
     pub untrue: Vec<Confirmation>,
+    pub field_events: Vec<FieldEvent>,
 }
 
 impl<'f> Branch<'f> {
@@ -53,18 +66,43 @@ impl<'f> Branch<'f> {
     pub fn start(facility: &'f Facility) -> Result<Self, Error> {
         let cell = Cell::new(&facility.description, facility.seed).map_err(StartError::from)?;
         let (store, reloads) = (Arc::clone(&facility.store), Arc::clone(&facility.reloads));
+        let field = facility.mapping.as_ref().map(|mapping| {
+            SimulatedField::of_cell(Arc::clone(mapping), &facility.description, &cell).map(Field::Simulated)
+        });
+        let field = field.transpose().map_err(StartError::from)?;
+        let closed = ClosedLoop::new(Present::default(), store, reloads, cell).without_near_misses();
         Ok(Self {
             facility,
-            closed: ClosedLoop::new(Present::default(), store, reloads, cell).without_near_misses(),
+            closed: match field {
+                Some(field) => closed.with_field(field),
+                None => closed,
+            },
             command_box: CommandBox::default(),
             events: Vec::new(),
             untrue: Vec::new(),
+            field_events: Vec::new(),
         })
     }
 
     pub fn step(&mut self, commander: &mut impl Commander) {
-        let (Settled { events, untrue, .. }, _) = self.closed.step(&mut self.command_box, commander);
-        (self.events, self.untrue) = (events, untrue);
+        let (Settled { events, untrue, field, .. }, _) = self.closed.step(&mut self.command_box, commander);
+        (self.events, self.untrue, self.field_events) = (events, untrue, field);
+    }
+
+    /// The emulated couplers, if any.
+    #[must_use]
+    pub fn field(&self) -> Option<&SimulatedField> {
+        match self.closed.workstation.field.as_deref() {
+            Some(Field::Simulated(field)) => Some(field),
+            Some(Field::External(_)) | None => None,
+        }
+    }
+
+    pub fn field_mut(&mut self) -> Option<&mut SimulatedField> {
+        match self.closed.workstation.field.as_deref_mut() {
+            Some(Field::Simulated(field)) => Some(field),
+            Some(Field::External(_)) | None => None,
+        }
     }
 
     #[must_use]

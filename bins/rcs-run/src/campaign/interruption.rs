@@ -14,6 +14,7 @@ use runtime::{StartError, setup::fault_file};
 
 use super::{
     disturbance::{self, Disturbance},
+    outage::{self, Outage},
     script::{FAULT, Script, ScriptStep, away, lead, nudge},
 };
 use crate::rcs_run::error::Error;
@@ -47,6 +48,7 @@ pub enum Kind {
     Estop,                         // emergency stop, and the start-up at the panel
     Fault(String, Arc<FaultFile>), // the faults of a file for [`FAULT`] ticks, with the name of the file
     Disturbed(Disturbance),        // a person moves the robot aside, or changes the parts in the cell
+    Outage(Outage),                // the connections of couplers are cut for a time
 }
 
 /// What fails in a loss of power, in addition to the controller.
@@ -108,6 +110,7 @@ impl fmt::Display for Kind {
                 write!(f, "power:{name}")
             }
             Self::Disturbed(disturbance) => disturbance.fmt(f),
+            Self::Outage(outage) => outage.fmt(f),
             plain => f.write_str(PLAIN.iter().find(|(_, kind)| kind == plain).map_or("", |(name, _)| name)),
         }
     }
@@ -149,6 +152,9 @@ impl Kind {
             Some((word, _)) if disturbance::WORDS.contains(&word) => {
                 Disturbance::named(text).map(|disturbance| vec![Self::Disturbed(disturbance)])
             }
+            Some((outage::WORD, of)) => {
+                Outage::named(of).map(|outages| outages.into_iter().map(Self::Outage).collect())
+            }
             Some(("fault", name)) => {
                 let path = FAULTS.find(Path::new(name), data).map_err(StartError::from)?;
                 fault(&path, cell)?.map(|kind| vec![kind])
@@ -183,6 +189,7 @@ impl Kind {
                 | Self::Lost(_)
                 | Self::Cut
                 | Self::Fault(..)
+                | Self::Outage(_)
         )
     }
 
@@ -202,6 +209,14 @@ impl Kind {
     pub const fn disturbance(&self) -> Option<&Disturbance> {
         match self {
             Self::Disturbed(disturbance) => Some(disturbance),
+            _ => None,
+        }
+    }
+
+    #[must_use]
+    pub const fn outage(&self) -> Option<&Outage> {
+        match self {
+            Self::Outage(outage) => Some(outage),
             _ => None,
         }
     }
@@ -233,7 +248,7 @@ impl Kind {
             Self::Estop => {
                 let mut steps = vec![ScriptStep::key(Key::Press(EStop::Pedestal)), ScriptStep::Wait(STOPPED)];
                 steps.push(ScriptStep::key(Key::Release(EStop::Pedestal)));
-                steps.push(ScriptStep::StartUp);
+                steps.extend([ScriptStep::StartUp, ScriptStep::Release]);
                 steps
             }
             Self::Fault(_, file) => {
@@ -246,6 +261,7 @@ impl Kind {
             }
             Self::Disturbed(Disturbance { what: disturbance::What::Jog(way), .. }) => lead(*way),
             Self::Disturbed(Disturbance { what, .. }) => vec![ScriptStep::Change(what.clone())],
+            Self::Outage(outage) => outage.steps(),
         };
         Script::new(steps)
     }
@@ -253,15 +269,16 @@ impl Kind {
 
 pub fn first_words() -> impl Iterator<Item = &'static str> {
     let plain = PLAIN.iter().map(|(name, _)| *name);
-    plain.chain(OF_PROCESS).chain(["fault", "all"]).chain(disturbance::WORDS)
+    plain.chain(OF_PROCESS).chain(["fault", "all", outage::WORD]).chain(disturbance::WORDS)
 }
 
 fn words() -> String {
     let plain = PLAIN.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
     let processes = ProcessId::ALL.iter().map(|process| word_of(*process)).collect::<Vec<_>>().join(", ");
     format!(
-        "{plain}, held[:PROCESS], restart[:PROCESS], lost[:PROCESS], power[:arm|:air], fault[:FILE], jog:X:Y:Z, take:PART, \
-         move:PART:X:Y, swap:PART:KIND, add:KIND:PLACE:SECTOR or all; processes are {processes}"
+        "{plain}, held[:PROCESS], restart[:PROCESS], lost[:PROCESS], power[:arm|:air], fault[:FILE], \
+         outage:DEVICE[/DEVICE][:SECONDS], jog:X:Y:Z, take:PART, move:PART:X:Y, swap:PART:KIND, \
+         add:KIND:PLACE:SECTOR or all; processes are {processes}"
     )
 }
 

@@ -12,6 +12,7 @@ use std::{
 };
 
 use crate::pages::VERSION;
+use rcs_core::digest::Digest;
 use runtime::StartError;
 use serde::{Deserialize, Serialize};
 
@@ -44,12 +45,22 @@ pub type Judged = (BranchResult, Coverage);
 pub fn campaign(facility: &Facility, parent: &Parent, procedure: Procedure, drawn: bool) -> String {
     let Procedure { recovery, tries, until } = procedure;
     format!(
-        "{} seed {} digest {} by {VERSION}: {recovery:?}, {tries} tries, judged at {until:?}{}",
+        "{} seed {} digest {}{} by {VERSION}: {recovery:?}, {tries} tries, judged at {until:?}{}",
         facility.job.name,
         facility.seed,
         parent.digest,
+        couplers(facility),
         if drawn { ", drawn" } else { "" }
     )
+}
+
+/// The digest of the mapping, if there is one.
+fn couplers(facility: &Facility) -> String {
+    facility.mapping.as_ref().map_or_else(String::new, |mapping| {
+        let mut digest = Digest::new();
+        digest.add(format!("{mapping:?}").as_bytes());
+        format!(" couplers {digest}")
+    })
 }
 
 impl Journal {

@@ -24,6 +24,7 @@ mod known;
 mod markdown;
 mod motion;
 mod operator;
+mod outage;
 mod parent;
 mod past;
 mod pool;
@@ -44,7 +45,7 @@ use std::{fs, io, process::ExitCode};
 
 use os_io::{console, replace::replace_text, shell};
 use runtime::{
-    StartError,
+    StartError, field,
     judge::check_job,
     setup::{CellFile, TaskFiles},
 };
@@ -126,7 +127,11 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
             result.smallest = Some(smallest.to_string());
         }
     }
-    let called = format!("rcs-run campaign {} --seed {}", shell::word(job), arguments.seed);
+    let field = arguments
+        .field
+        .as_ref()
+        .map_or_else(String::new, |field| format!(" --field {}", shell::word(&field.to_string())));
+    let called = format!("rcs-run campaign {} --seed {}{field}", shell::word(job), arguments.seed);
     let report = CampaignReport::new(&facility.job.name, called, &parent, &results, &met);
     if arguments.json {
         console::json(&report.json()?)?;
@@ -160,6 +165,7 @@ fn draw(
     let (data, cell) = (&arguments.data, &facility.description);
     let kinds = arguments.interrupt.iter().map(|text| Kind::named(text, data, cell));
     let kinds = kinds.collect::<Result<Vec<_>, _>>()?.concat();
+    check_outages(facility, kinds.iter())?;
     let settings =
         random::Settings { branches, longest: usize::from(arguments.longest), seed: arguments.draw };
     Ok(Draw::new(parent, &kinds, procedure, settings))
@@ -174,6 +180,8 @@ fn plans(
     let (data, cell) = (&arguments.data, &facility.description);
     let series = arguments.interrupt.iter().map(|text| Series::named(text, data, cell));
     let series = series.collect::<Result<Vec<_>, _>>()?.concat();
+    let kinds = series.iter().flat_map(Series::interruptions).map(|interruption| &interruption.kind);
+    check_outages(facility, kinds)?;
     let stops = |series: &Series| series.interruptions().last().is_some_and(|last| last.kind.is_stop());
     if let (Until::Rest, Some(other)) = (procedure.until, series.iter().find(|series| !stops(series))) {
         return Err(Error::Campaign(format!(
@@ -192,13 +200,30 @@ fn plans(
     Ok(series.iter().flat_map(of).collect())
 }
 
+fn check_outages<'k>(facility: &Facility, mut kinds: impl Iterator<Item = &'k Kind>) -> Result<(), Error> {
+    let refused = kinds.find_map(|kind| kind.outage()?.refusal(facility.mapping.as_deref()));
+    refused.map_or(Ok(()), |refused| Err(Error::Campaign(refused)))
+}
+
 fn facility(arguments: &CampaignArguments, job: &str) -> Result<Facility, Error> {
     let data = &arguments.data;
     let mut files = TaskFiles::load(data, Some(job), false)?;
     let CellFile { description, .. } = CellFile::load(data, &mut files, false)?;
     let TaskFiles { store, job, .. } = files;
     check_job(&job, &store, None)?;
-    Ok(Facility::new(store, job, description, arguments.seed))
+    let mapping = match &arguments.field {
+        Some(field) if !field.is_simulated => {
+            let why = format!("--field {field}: a campaign runs in simulated time: expected sim:NAME");
+            return Err(Error::Campaign(why));
+        }
+        Some(field) => {
+            let (mapping, _) = field::load(field, data)?;
+            field::check_job(&mapping, &job)?;
+            Some(mapping)
+        }
+        None => None,
+    };
+    Ok(Facility::new(store, job, description, arguments.seed).with_mapping(mapping))
 }
 
 fn ticks(arguments: &CampaignArguments) -> Ticks {
@@ -207,6 +232,7 @@ fn ticks(arguments: &CampaignArguments) -> Ticks {
         (Some(every), true) => Ticks::Both(every),
         (None, true) => Ticks::Changes,
         _ if arguments.states => Ticks::States,
+        _ if arguments.outputs.is_some() => Ticks::Outputs(arguments.outputs.unwrap_or(1)),
         (every, false) => Ticks::Every(every.unwrap_or(EVERY)),
     }
 }

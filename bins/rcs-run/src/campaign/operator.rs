@@ -11,6 +11,7 @@
 
 use std::fmt;
 
+use field::Why;
 use interfaces::{HwsCommand, Reason, hws::HwsReport};
 use neighbours::workstation::{
     Status, TaskState,
@@ -25,6 +26,8 @@ use closed_loop::{Commander, workstation::SimulatedWorkstation};
 const REST_LIMIT: u64 = 25;
 /// Time limit of a command, ticks: five minutes, as in a run.
 const TIME_LIMIT: u64 = neighbours::workstation::player::TIME_LIMIT;
+/// Ticks from the PAUSE to the look at a machine that may have begun: longer than its cycle of 3 s.
+const LOOK: u64 = 125;
 const ECHO_LIMIT: u64 = 25; // ticks within which Task must echo a command
 
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +37,8 @@ enum Doing {
     Command,
     Failed,
     Action,
+    /// A line of the workstation begins again.
+    Begin,
     Over,
     /// The command failed, and no try is left.
     Stranded,
@@ -61,7 +66,7 @@ pub struct Ended {
     pub tick: Tick,
     /// Position in the job: 0 for the first PAUSE.
     pub line: usize,
-    /// The command; empty for an action of the workstation.
+    /// The command, or the line of the workstation that has failed.
     pub command: String,
     /// True for a line of the job, false for a command of the recovery.
     pub of_job: bool,
@@ -85,6 +90,8 @@ pub struct Operator<'f> {
     replaced: Option<u32>, // number of the job's command that a command of the operator replaces
     /// True if the job's command finished before Task accepted the operator's; it is then not sent again.
     has_finished: bool,
+    /// Devices have failed to execute the current line of the workstation. True if they may have executed it.
+    failed_line: Option<bool>,
     outgoing: Option<HwsCommand>,
     /// True while the interruption continues: the operator waits.
     pub is_waiting: bool,
@@ -112,6 +119,7 @@ impl<'f> Operator<'f> {
             number: last.number,
             replaced: None,
             has_finished: false,
+            failed_line: None,
             outgoing: None,
             is_waiting: false,
             recovery: Recovery::Pause,
@@ -292,6 +300,10 @@ impl<'f> Operator<'f> {
                 self.doing = Doing::Command;
                 self.send(tick, &command);
             }
+            None if self.failed_line.is_some() => {
+                self.tried += 1;
+                self.doing = Doing::Begin;
+            }
             None => self.doing = Doing::Action,
         }
     }
@@ -335,7 +347,7 @@ impl<'f> Operator<'f> {
     fn next(&mut self, tick: Tick, workstation: &mut SimulatedWorkstation) {
         self.current += 1;
         (self.tried, self.second_pause, self.has_finished, self.remedied) = (0, None, false, false);
-        self.began = tick;
+        (self.began, self.failed_line) = (tick, None);
         let lines = self.lines;
         let Some(line) = lines.get(self.current - 1) else {
             self.doing = Doing::Over;
@@ -353,15 +365,49 @@ impl<'f> Operator<'f> {
                 self.send(tick, command);
             }
             Step::Workstation(Action::Wait { .. }) => {}
-            Step::Workstation(action) => {
-                if let Err(refused) = workstation.begin(action, &line.text) {
-                    self.strand(format!("workstation: {refused}"));
-                }
-            }
+            Step::Workstation(_) => self.begin(workstation),
             Step::After { ticks, action } => {
                 self.delayed.push((u64::from(*ticks), *action, line.text.clone()))
             }
         }
+    }
+
+    /// Begins the current line of the workstation.
+    fn begin(&mut self, workstation: &mut SimulatedWorkstation) {
+        self.doing = Doing::Action;
+        let line = self.current.checked_sub(1).and_then(|at| self.lines.get(at));
+        if let Some(JobLine { step: Step::Workstation(action), text, .. }) = line
+            && let Err(refused) = workstation.begin(action, text)
+        {
+            self.strand(format!("workstation: {refused}"));
+        }
+    }
+
+    /// True if the part of the current line has been machined.
+    fn is_machined(&self, workstation: &SimulatedWorkstation) -> bool {
+        let line = self.current.checked_sub(1).and_then(|at| self.lines.get(at));
+        match line.map(|line| &line.step) {
+            Some(Step::Workstation(Action::Machine { part, location, .. })) => {
+                let is_there = |one: &plant::PartState| {
+                    one.name == part.as_str() && one.location == location.name.as_str()
+                };
+                workstation.cell.parts().iter().any(is_there)
+            }
+            _ => false,
+        }
+    }
+
+    /// Notes that devices have not executed the current line of the workstation.
+    fn note_line(&mut self, tick: Tick, failure: &str) {
+        let line = self.current.checked_sub(1).and_then(|at| self.lines.get(at));
+        let command = line.map_or_else(String::new, |line| line.text.clone());
+        self.ended.push(Ended {
+            tick,
+            line: self.current,
+            command,
+            of_job: true,
+            failure: failure.to_owned(),
+        });
     }
 
     fn is_done(&self, tick: Tick, workstation: &SimulatedWorkstation) -> bool {
@@ -384,7 +430,15 @@ impl Commander for Operator<'_> {
             let _ = workstation.begin(&later.action, &later.text);
         }
         if let Some(fault) = workstation.fault() {
-            self.strand(format!("workstation: {fault}"));
+            let reason = format!("workstation: {fault}");
+            let why = workstation.line_failure().map(|failure| &failure.why);
+            if let (Some(why), Doing::Action) = (why, &self.doing) {
+                self.failed_line = Some(matches!(why, Why::Unknown(_)));
+                self.note_line(tick, &reason);
+                self.failed(tick, reason);
+            } else {
+                self.strand(reason);
+            }
         }
         let echo = u32::from(status.echo);
         self.has_finished |= self.replaced == Some(echo) && status.report == HwsReport::Finished;
@@ -420,6 +474,15 @@ impl Commander for Operator<'_> {
                 }
             }
             Doing::Command => self.follow(tick, status, workstation),
+            Doing::Begin if self.failed_line == Some(true) => {
+                // A person looks, after the device has had time to end what it may have begun.
+                if self.is_machined(workstation) {
+                    self.next(tick, workstation);
+                } else if tick.since(self.began) >= LOOK {
+                    self.begin(workstation);
+                }
+            }
+            Doing::Begin => self.begin(workstation),
             Doing::Action => {
                 if self.is_done(tick, workstation) {
                     self.next(tick, workstation);

@@ -2,7 +2,9 @@
 
 use std::collections::HashSet;
 
-use interfaces::{CommonMemory, Decided};
+use closed_loop::field::SimulatedField;
+use couplers::OutWords;
+use interfaces::{CommonMemory, Decided, DeviceOutputs, device::LinkBytes};
 use levels::ladder::ProcessId;
 use neighbours::workstation::player::{Hwsc, JobFailure, Progress, TIME_LIMIT};
 use rcs_core::{name::Name16, tick::Tick};
@@ -22,14 +24,19 @@ pub enum Ticks {
     Changes,
     /// The first tick of each state of the control processes: their steps, and the rows that they fired last.
     States,
+    /// Every n-th of the ticks within [`NEAR`] of a change of an output.
+    Outputs(u64),
     /// Every n-th tick, and the ticks of `Changes`.
     Both(u64),
 }
+
+const NEAR: u64 = 10; // ticks before and after a change of an output
 
 pub struct Parent {
     begun: Vec<Tick>, // first tick of each line; line 0 is the first PAUSE
     worlds: Vec<World>,
     changes: Vec<u64>,
+    outputs: Vec<u64>, // ticks in which an output of a device changes
     states: Vec<u64>,
     pub ticks: u64,
     pub digest: String,
@@ -55,6 +62,12 @@ pub fn state(memory: &CommonMemory) -> Vec<(Option<Name16>, Option<Decided>)> {
     ProcessId::ALL.iter().map(of).collect()
 }
 
+/// The outputs of the controller's processes and of the devices that execute lines, without the line to the robot.
+fn outputs(branch: &Branch<'_>) -> (DeviceOutputs, Vec<OutWords>) {
+    let words = DeviceOutputs { link_tx: LinkBytes::default(), ..branch.closed.outputs() };
+    (words, branch.field().map_or_else(Vec::new, SimulatedField::images))
+}
+
 #[must_use]
 pub fn emulator(facility: &Facility) -> Hwsc {
     Hwsc::new(facility.job.steps.clone(), TIME_LIMIT)
@@ -69,11 +82,13 @@ impl Parent {
             begun: Vec::new(),
             worlds: Vec::new(),
             changes: Vec::new(),
+            outputs: Vec::new(),
             states: Vec::new(),
             ticks: 0,
             digest: String::new(),
         };
         let mut before = steps(branch.memory(), 0);
+        let mut written = outputs(&branch);
         let mut known = HashSet::new();
         loop {
             branch.step(&mut hwsc);
@@ -88,6 +103,11 @@ impl Parent {
             if now != before {
                 parent.changes.push(tick.0);
                 before = now;
+            }
+            let writes = outputs(&branch);
+            if writes != written {
+                parent.outputs.push(tick.0);
+                written = writes;
             }
             if known.insert(state(branch.memory())) {
                 parent.states.push(tick.0);
@@ -111,6 +131,13 @@ impl Parent {
         (line, self.begun.get(line).copied().unwrap_or(tick))
     }
 
+    /// The tick in which a line has ended; for the last one, or one after it, the end of the job.
+    #[must_use]
+    pub fn end_of(&self, line: usize) -> Tick {
+        let next = line.checked_add(1).and_then(|next| self.begun.get(next));
+        next.copied().unwrap_or(Tick(self.ticks))
+    }
+
     #[must_use]
     pub fn world_after(&self, line: usize) -> Option<&World> {
         self.worlds.get(line)
@@ -126,10 +153,21 @@ impl Parent {
             Ticks::At(ticks) => ticks.iter().copied().filter(|tick| *tick < self.ticks).collect(),
             Ticks::Changes => changes().collect(),
             Ticks::States => self.states.clone(),
+            Ticks::Outputs(_) => {
+                let near = |tick: &u64| tick.saturating_sub(NEAR).max(1)..=*tick + NEAR;
+                self.outputs.iter().flat_map(near).filter(|tick| *tick < self.ticks).collect()
+            }
             Ticks::Both(step) => every(*step).chain(changes()).collect(),
         };
         forks.sort_unstable();
         forks.dedup();
+        if let Ticks::Outputs(every) = ticks {
+            let mut place = 0;
+            forks.retain(|_| {
+                place += 1;
+                (place - 1) % every == 0
+            });
+        }
         forks
     }
 }

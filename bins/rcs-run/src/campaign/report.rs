@@ -12,7 +12,7 @@ use super::{
     disturbance::{self, Follow},
     markdown::Column,
     parent::Parent,
-    verdict::{BranchResult, Verdict},
+    verdict::{BranchResult, OutageResult, Verdict},
 };
 use crate::rcs_run::error::Error;
 
@@ -32,6 +32,11 @@ struct Row {
     /// Largest number of ticks from the interruption to rest, if the branches are judged at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     rest_after: Option<u64>,
+    /// Number of branches that have got over an outage without a person, and the greatest delay of any, ticks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unattended: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    late: Option<u64>,
 }
 
 impl Row {
@@ -39,6 +44,11 @@ impl Row {
         self.branches += 1;
         self.without_command += usize::from(!result.met_command);
         self.rest_after = self.rest_after.max(result.rest_after);
+        if let Some(OutageResult { attended, late }) = result.outage {
+            let alone = usize::from(result.verdict == Verdict::Done && !attended);
+            self.unattended = Some(self.unattended.unwrap_or(0) + alone);
+            self.late = self.late.max(late);
+        }
         match result.verdict {
             Verdict::Done => self.done += 1,
             Verdict::Stranded => self.stranded += 1,
@@ -155,7 +165,7 @@ impl<'a> CampaignReport<'a> {
         for row in &self.rows {
             let _ = writeln!(
                 text,
-                "{:<24}{:>9}{:>7}{:>10}{:>6}{:>7}{:>7}{:>8.1}{:>12}{}",
+                "{:<24}{:>9}{:>7}{:>10}{:>6}{:>7}{:>7}{:>8.1}{:>12}{}{}",
                 row.interruption,
                 row.branches,
                 row.done,
@@ -168,6 +178,10 @@ impl<'a> CampaignReport<'a> {
                 row.rest_after.map_or_else(String::new, |ticks| format!(
                     "  at rest after {} at most",
                     amount(ticks, "tick")
+                )),
+                row.unattended.map_or_else(String::new, |alone| format!(
+                    "  {alone} without a person, at most {} later",
+                    amount(row.late.unwrap_or(0), "tick")
                 ))
             );
         }

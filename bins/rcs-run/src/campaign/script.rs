@@ -15,6 +15,7 @@ use rcs_core::tick::Tick;
 use super::{
     branch::Branch,
     disturbance::{self, Lead, Undo, What},
+    outage::{self, Outage},
     power,
 };
 
@@ -86,6 +87,8 @@ pub enum ScriptStep {
     Lead(Lead),   // stick and buttons, which move the robot along a path
     Change(What), // a change of the parts in the cell
     Undo(Undo),
+    Outage(Outage),
+    Release, // `io go` to the devices that have tripped, until all are running
 }
 
 impl ScriptStep {
@@ -239,6 +242,16 @@ impl Script {
                     let _ = branch.closed.workstation.cell.press(Key::Enter);
                 }
                 ScriptStep::StartUp => self.start_up(branch),
+                ScriptStep::Outage(cut) => cut.begin(branch),
+                ScriptStep::Release => {
+                    let now = branch.at();
+                    let until = *self.until.get_or_insert(Tick(now.0 + outage::RELEASE_LIMIT));
+                    let ticks = outage::RELEASE_LIMIT.saturating_sub(until.since(now));
+                    if now < until && !outage::release(branch, ticks) {
+                        return refused;
+                    }
+                    self.until = None;
+                }
             }
             self.at += 1;
         }

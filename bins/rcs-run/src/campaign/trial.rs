@@ -22,6 +22,7 @@ use super::{
     known::{End, Known, Passed, Rest},
     motion::Motion,
     operator::{Operator, Recovery, Then, Watching},
+    outage::{self, OutageMonitor},
     parent::Parent,
     script::Script,
     series::Series,
@@ -67,6 +68,7 @@ struct Trial<'f, 'p> {
     branch: Branch<'f>,
     operator: Operator<'f>,
     monitor: HarmMonitor,
+    outages: OutageMonitor,
     invariants: Invariants,
     series: &'p Series,
     interruption: usize, // index of the present or last interruption
@@ -86,7 +88,8 @@ struct Trial<'f, 'p> {
     judged_before: u64, // number of confirmations that were judged before the fork
     /// Number of confirmations judged after the known state in which the branch has ended.
     judged_behind: u64,
-    remedied: bool, // true if the remedy was applied and the disturbance undone
+    has_repeated: bool, // true if a command failed, or the operator sent one that is not of the job
+    remedied: bool,     // true if the remedy was applied and the disturbance undone
 }
 
 /// Interrupt a fork after its last tick, and judge the branch. It stops at a known state. If it is done, its states
@@ -112,6 +115,7 @@ pub fn run(
         branch,
         operator,
         monitor,
+        outages: OutageMonitor::default(),
         invariants,
         series,
         interruption: 0,
@@ -129,6 +133,7 @@ pub fn run(
         untrue: Vec::new(),
         judged_before,
         judged_behind: 0,
+        has_repeated: false,
         remedied: false,
     };
     trial.play(doing, known, observer)
@@ -183,6 +188,14 @@ impl Trial<'_, '_> {
             let at_box = self.is_of_a_person(over);
             self.tears |= self.takes_from_vise();
             self.monitor.look(&self.branch, at_box || (self.tears && self.operator.has_replaced()));
+            if self.branch.field().is_some() {
+                for broken in self.outages.look(&self.branch) {
+                    self.monitor.note(self.branch.at(), broken);
+                }
+                for (tick, text) in outage::told(&self.branch) {
+                    observer.say(tick, &text);
+                }
+            }
             if let Some(broken) = self.invariants.broken(&self.branch, !over) {
                 self.monitor.note(self.branch.at(), broken);
             }

@@ -15,6 +15,15 @@ pub enum Verdict {
     False,
 }
 
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+pub struct OutageResult {
+    /// True if a person released a device or repeated a line.
+    pub attended: bool,
+    /// Ticks by which a finished branch ended later than the undisturbed run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub late: Option<u64>,
+}
+
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct BranchResult {
     /// Tick after which the branch was interrupted.
@@ -50,6 +59,9 @@ pub struct BranchResult {
     /// True if the branch was to run to the end of the job.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub whole: bool,
+    /// How the branch got over the outage of a coupler, if there was one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outage: Option<OutageResult>,
     /// Digest of its last state.
     pub state: String,
     /// Digest of all ticks of a branch without interruption, which equals the digest of the ordinary run.

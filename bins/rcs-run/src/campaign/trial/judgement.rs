@@ -17,7 +17,7 @@ use super::{
         interruption::Kind,
         known::End,
         motion::Motion,
-        verdict::{BranchResult, Verdict},
+        verdict::{BranchResult, OutageResult, Verdict},
     },
     Observer, Trial, Until,
 };
@@ -35,6 +35,7 @@ impl Trial<'_, '_> {
             let how = if ended.failure.is_empty() { "finished" } else { ended.failure.as_str() };
             let text = format!("tick {}: {}: {how}", ended.tick.0, ended.command);
             observer.say(ended.tick, &text);
+            self.has_repeated |= !ended.of_job || !ended.failure.is_empty();
             self.ended.push((ended.tick, text));
             if ended.of_job && ended.failure.is_empty() {
                 self.compare(ended.line, &ended.command);
@@ -92,6 +93,10 @@ impl Trial<'_, '_> {
     pub(super) fn result(self, verdict: Verdict, end: &End, doing: Vec<String>) -> BranchResult {
         let (reason, detail) = self.why(verdict);
         let judged = self.judged();
+        let outage = self.kind().outage().map(|_| OutageResult {
+            attended: self.outages.has_released() || self.has_repeated,
+            late: (verdict == Verdict::Done).then(|| self.branch.at().since(self.parent.end_of(self.goal))),
+        });
         let digest = (*self.kind() == Kind::None).then(|| self.branch.closed.digest().to_string());
         let line = match self.line.checked_sub(1) {
             None => "PAUSE".to_owned(),
@@ -121,6 +126,7 @@ impl Trial<'_, '_> {
             judged,
             remedied: self.remedied || self.operator.has_remedied(),
             whole: self.until == Until::Job,
+            outage,
             state: end.state.to_string(),
             digest,
         }
