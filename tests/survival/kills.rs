@@ -1,7 +1,10 @@
 //! Killed runs: the log replays to the last second, the next run works at once, and no files remain.
 
+use std::fs;
+
 use executive::memory::ReadError;
 use record::replay;
+use rustix::process::Signal;
 use whole_system_tests::{
     Scratch,
     bench::{Ended, Running, assert_cleaned, rcs, traces, wait_for},
@@ -94,4 +97,25 @@ fn a_killed_run_is_resumed_from_its_journal() {
         let ended = run.end();
         assert_eq!(ended.status, Some(0), "killed after {tick}: {}", ended.last_words());
     }
+}
+
+#[test]
+fn journal_that_is_not_written_shows_in_status_and_result() {
+    let scratch = Scratch::new("no-journal");
+    let directory = scratch.file("");
+    let more = ["--clock", "20x", "--log", "none", "--journal", "run.journal"];
+    let mut run = Running::start(&directory, "linkbar", &more);
+    let reader = run.attach();
+    run.reach(&reader, 60);
+    drop(reader);
+    fs::remove_file(scratch.file("run.journal")).expect("the run has a journal");
+    wait_for("the status reports the journal", || {
+        let status =
+            rcs(&directory, &["status", run.name.as_str()]).output().expect("rcs-run can be started");
+        String::from_utf8_lossy(&status.stdout).contains("runs; its journal is not written: ")
+    });
+    run.signal(Signal::INT);
+    let ended = run.end();
+    let trouble = ended.result["journal_trouble"].as_str().unwrap_or_default();
+    assert!(trouble.contains("was removed during the run"), "{}", ended.result);
 }

@@ -63,8 +63,8 @@ pub struct RunConfig {
     pub log_limit: Option<LogLimit>,
     /// File in which the run keeps what the controller knows, for a start after a loss of power (docs/resume.md).
     pub journal: Option<PathBuf>,
-    /// Journal or log of an earlier run: the controller starts with its knowledge, and the job waits for an operator. The
-    /// run continues a journal, unless [`Self::journal`] names another file.
+    /// Journal or log of an earlier run: the controller starts with its knowledge, and the job waits for an operator.
+    /// The run continues a journal, unless [`Self::journal`] names another file.
     pub resume: Option<PathBuf>,
     /// SQLite file of the Data System's items. Without it they are in memory and lost at the end.
     #[serde(alias = "data-base")]

@@ -146,8 +146,8 @@ fn since_1970(time: SystemTime) -> u64 {
 }
 
 impl Resumed {
-    /// Read the journal or the log of a configuration, if it names one. Fails if it cannot be used, or the run cannot be
-    /// resumed.
+    /// Read the journal or log of a configuration, if it names one. Fails if it cannot be used, or if the run cannot
+    /// be resumed.
     pub fn load(config: &RunConfig) -> Result<Option<Self>, StartError> {
         let Some(path) = &config.resume else { return Ok(None) };
         let is_log = journal::is_log(path);

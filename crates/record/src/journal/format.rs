@@ -1,7 +1,7 @@
 //! The bytes of a journal (docs/design/resume.md "Format").
 //!
 //! ```text
-//! head     RCSJRNL\0   version u32   slots u32   layout u64   description u32   length u32   identity, text   zeros   hash u64
+//! head     RCSJRNL\0   version u32   slots u32   layout u64   description u32   length u32   identity   zeros   hash u64
 //! layout   description of the entries, compressed   zeros
 //! slot 0   sequence u64   entry   hash u64   zeros
 //! ...

@@ -1,8 +1,9 @@
 //! The images of a log as knowledge, when the journal of its run is missing or cannot be used.
 
-use std::{fs::File, io::Read as _, path::Path};
+use std::{io::Read as _, path::Path};
 
 use interfaces::{CommonMemory, ExternalInputs};
+use os_io::files;
 use rcs_core::{plain::from_bytes, tick::Tick};
 
 use super::{
@@ -30,7 +31,7 @@ pub enum LoggedError {
     Continued(Part),
     #[error("the log has no complete image: its run was stopped before its first tick")]
     Empty,
-    #[error("the log does not reach to tick {0}")]
+    #[error("the log has no image of tick {0}, the last one of the saved cell")]
     Short(Tick),
 }
 
@@ -93,9 +94,10 @@ pub(super) fn image(log: &Log, at: Option<Tick>) -> Result<(LoggedTick, bool), L
                 let is_whole = log.complete && !is_damaged && !log.is_damaged_from(part);
                 return Ok((found, !is_whole || has_lost_ticks(log)));
             }
-            (_, Some(at)) if first == 0 => return Err(LoggedError::Short(at)),
+            (Some(_), Some(at)) => return Err(LoggedError::Short(at)),
+            (None, Some(at)) if first == 0 => return Err(LoggedError::Short(at)),
             (None, None) if first == 0 => return Err(LoggedError::Empty),
-            _ => back = back.saturating_mul(STEP),
+            (None, _) => back = back.saturating_mul(STEP),
         }
     }
 }
@@ -110,5 +112,5 @@ fn has_lost_ticks(log: &Log) -> bool {
 #[must_use]
 pub fn is_log(path: &Path) -> bool {
     let mut start = [0; mcap::MAGIC.len()];
-    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == mcap::MAGIC
+    files::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == mcap::MAGIC
 }

@@ -13,6 +13,8 @@
 //! [`Commander`](rcs_core::handshake::Commander). While an operator is connected, the job waits instead of ending if a
 //! command fails, the joystick box is on, an emergency occurs, or the workstation refuses an action.
 
+mod named_line;
+
 use std::fmt;
 
 use interfaces::{HwsCommand, Unconfirmed};
@@ -153,30 +155,6 @@ impl Hwsc {
             WaitReason::Resumed
         });
         self
-    }
-
-    /// True if a person must name the line of a resumed job before it continues.
-    #[must_use]
-    pub const fn asks_line(&self) -> bool {
-        self.intervention.asks_line
-    }
-
-    /// An operator names the present line of a resumed job, with which it then continues. Returns its text.
-    pub fn name_line(&mut self, line: usize) -> Result<&str, OperatorError> {
-        self.not_ended()?;
-        let State::Waits { before_line, .. } = &mut self.intervention.state else {
-            return Err(OperatorError::Plays);
-        };
-        if !self.intervention.asks_line {
-            return Err(OperatorError::LineKnown);
-        }
-        let last = self.steps.len();
-        let named = line.checked_sub(1).and_then(|at| self.steps.get(at));
-        let named = named.ok_or(OperatorError::NoSuchLine { found: line, last })?;
-        *before_line = true;
-        (self.current, self.began, self.intervention.asks_line) = (line, None, false);
-        self.later.clear();
-        Ok(&named.text)
     }
 
     /// Asks a person this question at the first `job go`.
