@@ -176,7 +176,7 @@ fn coupler_of_another_kind_answers_as_its_manual_says() {
     let wago = |text: String| text.replace("\"bk9000\"", "\"wago\"").replace("holding 0x8", "holding 0x2");
     let station = Station::start_with(&[], wago);
     let mut client = Client::connect(station.fixture);
-    assert_eq!(client.write(0x1000, 5), [16, 0x10, 0, 0, 1]);
+    assert_eq!(client.write(0x1000, 20), [16, 0x10, 0, 0, 1]);
     assert_eq!(client.write(0x1001, 0x8000), [16, 0x10, 1, 0, 1], "only function 16 restarts it");
     assert_eq!(client.write(0x1003, 1), [16, 0x10, 3, 0, 1]);
     assert_eq!(client.write(0x200, VISE_PARTIAL), [16, 2, 0, 0, 1]);

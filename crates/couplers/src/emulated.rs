@@ -272,8 +272,8 @@ impl Emulated {
             return Some(self.lengths[usize::from(index)]);
         }
         if let Some(index) = facts.identity.and_then(|(first, count)| offset(first, count)) {
-            let text = self.kind.text().bytes().chain(*b" emulate").map(|byte| byte.to_ascii_uppercase());
-            let mut bytes = text.chain(std::iter::repeat(0)).skip(2 * usize::from(index));
+            let name = self.kind.text().bytes().map(|byte| byte.to_ascii_uppercase());
+            let mut bytes = name.chain(*b" emulate").chain(std::iter::repeat(0)).skip(2 * usize::from(index));
             return Some(u16::from_be_bytes([bytes.next()?, bytes.next()?]));
         }
         match (&facts.status, self.fault) {

@@ -106,7 +106,10 @@ fn restart_of_every_kind_trips_before_an_output_is_on() {
 #[test]
 fn settings_of_every_kind_are_those_of_its_manual() {
     let cases: [(Kind, &[(u16, u16)]); 4] = [
-        (Kind::Bk9000, &[(0x1120, 500), (0x1122, 0), (0x100C, 0), (0x1010, 32), (0x1011, 64)]),
+        (
+            Kind::Bk9000,
+            &[(0x1000, 0x424B), (0x1120, 500), (0x1122, 0), (0x100C, 0), (0x1010, 32), (0x1011, 64)],
+        ),
         (Kind::Ek9000, &[(0x1120, 500), (0x1122, 0), (0x1123, 0), (0x1124, 1), (0x1040, 1), (0x1021, 0)]),
         (Kind::Wago, &[(0x1000, 5), (0x1001, 0xC000), (0x1002, 0), (0x1006, 1), (0x1022, 32), (0x1020, 0)]),
         (Kind::Turck, &[(0x1120, 500), (0x100C, 0)]),
@@ -208,7 +211,7 @@ fn wago_refuses_everything_after_its_watchdog_until_the_reset() {
     assert_eq!(run.state(), State::Running);
 }
 
-/// Old firmware does not count function 23: only the functions 15 and 16 are in the mask, and 16 is what a session uses.
+/// Old firmware does not count function 23. Only the functions 15 and 16 are in the mask, and a session writes with 16.
 #[test]
 fn wago_watchdog_counts_only_functions_that_write() {
     let mut run = Run::running(plan(Kind::Wago));
