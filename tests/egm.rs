@@ -136,7 +136,7 @@ fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
         let port =
             UdpSocket::bind("127.0.0.1:0").and_then(|socket| socket.local_addr()).expect("a port").port();
         let robot = format!("egm:127.0.0.1:{port}{option}");
-        let run = Command::new(rcs_run())
+        let mut run = Command::new(rcs_run())
             .current_dir(root())
             .args(["linkbar", "--json", "--shared-memory", "off", "--clock", "real", "--wait", "3"])
             .args(["--log", "none", "--robot", &robot])
@@ -144,7 +144,7 @@ fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
             .stderr(std::process::Stdio::piped())
             .spawn()
             .expect("rcs-run can be started");
-        for _ in 0..600 {
+        while run.try_wait().expect("a child").is_none() {
             let _ = socket.send_to(datagram, ("127.0.0.1", port)); // before the run listens, datagrams are lost
             std::thread::sleep(std::time::Duration::from_millis(10));
         }
@@ -152,7 +152,7 @@ fn refused_datagrams_are_counted_and_shown_before_the_first_message() {
         let result: Value = serde_json::from_slice(&output.stdout).expect("a result");
         let terminal = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(3), "{terminal}");
-        assert!(result["egm"][counter].as_u64() > Some(100), "{}", result["egm"]);
+        assert!(result["egm"][counter].as_u64() > Some(10), "{}", result["egm"]);
         assert_eq!(result["egm"]["received"], 0);
         for text in
             [result["egm"]["last_refused"].as_str(), result["failure"]["text"].as_str(), Some(&*terminal)]

@@ -167,9 +167,21 @@ fn status_describes_waiting_and_ending_runs() {
     let run = ["linkbar", "--clock", "real", "--log", "none", "--run", "ends"];
     let running = Running::begin(runs.rcs(&run));
     runs.wait_for(&["ends"], "GO-THRU");
-    thread::sleep(Duration::from_secs(5));
-    kill_process(Pid::from_child(&running.0), Signal::TERM).unwrap();
-    runs.wait_for(&["ends"], "ends ends: the robot ramps to rest");
+    thread::sleep(Duration::from_secs(5)); // until the robot has its full speed
+    let signal = |signal| kill_process(Pid::from_child(&running.0), signal).unwrap();
+    signal(Signal::TERM);
+    // The ramp is short, so the run is stopped while its status is read.
+    let started = Instant::now();
+    loop {
+        signal(Signal::STOP);
+        let said = text_of(&runs.status(&["ends"]).stdout);
+        signal(Signal::CONT);
+        if said.contains("ends ends: the robot ramps to rest") {
+            break;
+        }
+        assert!(started.elapsed() < TIME_LIMIT, "{said}");
+        thread::sleep(Duration::from_millis(20));
+    }
     drop(running);
     let gone = runs.status(&[]);
     assert!(

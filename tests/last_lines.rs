@@ -1,15 +1,14 @@
 //! The last lines of a run: places of the parts, then commands that can be pasted into a shell.
 
 use std::{
+    fs,
     io::Read as _,
     path::Path,
     process::{Command, Stdio},
-    thread,
-    time::Duration,
 };
 
 use rustix::process::{Pid, Signal, kill_process};
-use whole_system_tests::{Scratch, rcs_console, rcs_log, rcs_run};
+use whole_system_tests::{Scratch, bench::wait_for, rcs_console, rcs_log, rcs_run};
 
 /// A command that starts a program by its path, not by cargo, with both outputs in one stream.
 fn on_terminal(scratch: &Scratch, line: &str) -> Command {
@@ -137,7 +136,9 @@ fn interrupted_run_in_real_time_has_its_times_and_the_last_lines() {
     let line = format!("{} --clock 20x", rcs_run().display());
     let mut run =
         on_terminal(&scratch, &line).stdout(Stdio::piped()).spawn().expect("a shell can be started");
-    thread::sleep(Duration::from_millis(3700)); // the blank has been delivered; the robot may already hold it
+    // By then the blank has been delivered; the robot may already hold it.
+    let log = scratch.file("runs/linkbar.mcap");
+    wait_for("a part of the run", || fs::metadata(&log).is_ok_and(|log| log.len() > 1_500_000));
     kill_process(Pid::from_child(&run), Signal::INT).expect("the run has not ended");
     let mut output = String::new();
     run.stdout.take().expect("it is piped").read_to_string(&mut output).expect("text");

@@ -23,7 +23,8 @@ pub enum Process {
 }
 
 impl Process {
-    pub fn start(self, run: &RunName) -> Child {
+    /// Returns `None` if the process could not begin, as when the run has ended.
+    pub fn start(self, run: &RunName) -> Option<Child> {
         let name = self.to_possible_value().expect("no process is skipped");
         let mut child = Command::new(env::current_exe().expect("a program has a path"))
             .args(["--process", name.get_name(), "--run", run.as_str()])
@@ -34,8 +35,11 @@ impl Process {
         let mut line = String::new();
         let output = child.stdout.as_mut().expect("its output is piped");
         BufReader::new(output).read_line(&mut line).expect("it has a line to say");
-        assert_eq!(line, "at work\n", "the {name:?} could not begin");
-        child
+        if line == "at work\n" {
+            return Some(child);
+        }
+        child.wait().expect("it has ended");
+        None
     }
 
     pub fn be(self, run: &str) -> ExitCode {
