@@ -86,7 +86,7 @@ impl State {
             situation: Situation {
                 command: GripActivity::Nothing,
                 gripper,
-                readings: self.readings(inputs.tick),
+                readings: self.readings(inputs.tick, connection),
                 clock: self.clock(inputs.tick),
                 motion: if self.still_ticks >= STILL_TICKS { GripMotion::Still } else { GripMotion::Moving },
                 felt: self.felt,
@@ -197,9 +197,10 @@ impl State {
         }
     }
 
-    fn readings(&self, tick: Tick) -> Calibrating {
+    fn readings(&self, tick: Tick, connection: GroupHealth) -> Calibrating {
         let plausible = || is_plausible(&self.closed, &self.open, &self.steady.mean());
-        if tick.since(self.since) > CALIBRATION_LIMIT_TICKS {
+        // Fingers without air stop anywhere, and their readings are steady.
+        if connection == GroupHealth::Tripped || tick.since(self.since) > CALIBRATION_LIMIT_TICKS {
             Calibrating::Late
         } else if self.steady.ticks < STEADY_TICKS {
             Calibrating::Unsteady

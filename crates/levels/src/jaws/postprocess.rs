@@ -10,7 +10,7 @@ use super::{
     state::State,
     tables::{
         Action, Attachment, StateVariables,
-        valves::{Air, Supply, valves},
+        valves::{Air, Side, Supply, valves},
     },
 };
 use crate::execution::Outcome;
@@ -40,7 +40,9 @@ impl State {
                 Air::Off
             }
         };
-        let air = match valves((), &Supply { mated: seen.mated, set }).action {
+        let connection = seen.situation.connection;
+        let side = if self.valves.open { Side::Opening } else { Side::Other };
+        let air = match valves((), &Supply { mated: seen.mated, connection, side, set }).action {
             Air::Keep => self.valves,
             Air::Off => JawValves { open: false, close: false },
             Air::Close => JawValves { open: false, close: true },

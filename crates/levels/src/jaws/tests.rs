@@ -329,6 +329,23 @@ fn late_device_only_delays_a_command() {
 }
 
 #[test]
+fn tripped_device_ends_the_air_that_opens_and_keeps_the_air_that_closes() {
+    let mut bench = VBench::new(2.0);
+    assert_eq!(bench.execute(order(JawsVerb::Release, 3.0)), OPENED);
+    for (connection, opens) in
+        [(GroupHealth::Stale, true), (GroupHealth::Lost, true), (GroupHealth::Tripped, false)]
+    {
+        bench.external.devices.field.grip = connection;
+        assert_eq!(bench.wait(5).valves, JawValves { open: opens, close: false }, "{connection:?}");
+    }
+    bench.external.devices.field.grip = GroupHealth::Fresh;
+    assert_eq!(bench.wait(5).valves, JawValves::default(), "the air does not return by itself");
+    assert_eq!(bench.execute(order(JawsVerb::Grasp, 0.0)), CLOSED);
+    bench.external.devices.field.grip = GroupHealth::Tripped;
+    assert_eq!(bench.wait(5).valves, JawValves { open: false, close: true });
+}
+
+#[test]
 fn every_row_fires() {
     let mut silent = silent::<VGrip, ()>(&[
         every_command_reports_where_its_fingers_stopped,

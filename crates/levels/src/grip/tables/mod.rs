@@ -88,7 +88,7 @@ pub enum Calibrating {
     Steady,
     /// The readings are steady, but do not distinguish the ends of travel.
     Implausible,
-    /// The calibration exceeds its time limit.
+    /// The calibration exceeds its time limit, or the valves of the device have been off without the controller.
     Late,
 }
 

@@ -708,6 +708,24 @@ fn stale_readings_turn_the_valves_off() {
 }
 
 #[test]
+fn tripped_device_ends_the_calibration() {
+    let mut bench = Bench::new(Gripper::new(2.0, 16));
+    bench.wait(5);
+    assert_eq!(bench.process.state.phase, GripPhase::Closing);
+    bench.external.devices.field.grip = GroupHealth::Tripped;
+    assert_eq!(bench.wait(2).valves.bits, 0, "an operator can release the device");
+    bench.wait(50);
+    bench.external.devices.field.grip = GroupHealth::Fresh;
+    let outputs = bench.wait(50);
+    assert_eq!((outputs.valves.bits, outputs.status.initialized), (0, false), "not without a command");
+    assert_eq!(bench.process.state.phase, GripPhase::Failed);
+    bench.done(GripVerb::UpInit, 0.0, 0);
+    bench.external.devices.field.grip = GroupHealth::Tripped;
+    bench.command(GripVerb::UpInit, 0.0, 0);
+    assert_eq!(reason(&mut bench), Reason::GripNotCalibrated);
+}
+
+#[test]
 fn every_row_fires() {
     let mut silent = silent::<Grip, ()>(&[
         stale_readings_turn_the_valves_off,
