@@ -132,7 +132,7 @@ impl SimulatedWorkstation {
         self.begin(action, line)
     }
 
-    /// False for a line that the cell executes; a person fills the trays of the simulated cell.
+    /// False for a line that the cell executes; a person fills the trays of the simulated cell, once.
     fn begin_by_devices(&mut self, action: &Action) -> Result<bool, String> {
         let Some(field) = self.field.as_deref_mut() else { return Ok(false) };
         let is_simulated = matches!(field, Field::Simulated(_));
@@ -141,13 +141,24 @@ impl SimulatedWorkstation {
             return Ok(false);
         }
         lines.begin(action)?;
-        Ok(!(is_simulated && matches!(action, Action::Tray { .. })))
+        let is_to_fill = matches!(action, Action::Tray { .. }) && !self.is_filled(action);
+        Ok(!(is_simulated && is_to_fill))
     }
 
     /// The failure of a line that devices executed, in the tick in which it fails.
     #[must_use]
     pub fn line_failure(&self) -> Option<&Failure> {
         self.field.as_deref().and_then(|field| field.desk().lines().failure())
+    }
+
+    /// True if the part of the line is in its tray, since the line was interrupted after a person had filled it.
+    fn is_filled(&self, action: &Action) -> bool {
+        let Action::Tray { location, object, .. } = action else { return false };
+        let sector = location.sector.map_or(0, |sector| u16::try_from(sector).unwrap_or(u16::MAX));
+        self.cell.parts().iter().any(|part| {
+            part.name == object.as_str()
+                && (part.location.as_str(), part.sector) == (location.name.as_str(), sector)
+        })
     }
 
     fn is_executed_by_devices(&self) -> bool {
