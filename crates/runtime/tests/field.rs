@@ -146,6 +146,7 @@ fn job_at_the_panel_of_another_robot_is_refused() {
         job: job.display().to_string(),
         field: None,
         robot: "egm:6510".parse().unwrap(),
+        clock: ClockKind::Real,
         ..config()
     };
     let refused = Run::new(config, Box::new(())).err().unwrap();

@@ -88,8 +88,8 @@ struct Trial<'f, 'p> {
     judged_before: u64, // number of confirmations that were judged before the fork
     /// Number of confirmations judged after the known state in which the branch has ended.
     judged_behind: u64,
-    has_repeated: bool, // true if a command failed, or the operator sent one that is not of the job
-    remedied: bool,     // true if the remedy was applied and the disturbance undone
+    has_failed_line: bool, // true if devices have not executed a line of the workstation
+    remedied: bool,        // true if the remedy was applied and the disturbance undone
 }
 
 /// Interrupt a fork after its last tick, and judge the branch. It stops at a known state. If it is done, its states
@@ -133,7 +133,7 @@ pub fn run(
         untrue: Vec::new(),
         judged_before,
         judged_behind: 0,
-        has_repeated: false,
+        has_failed_line: false,
         remedied: false,
     };
     trial.play(doing, known, observer)

@@ -17,7 +17,7 @@ pub enum Verdict {
 
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub struct OutageResult {
-    /// True if a person released a device or repeated a line.
+    /// True if a person released a device, or began a line of the workstation again.
     pub attended: bool,
     /// Ticks by which a finished branch ended later than the undisturbed run.
     #[serde(default, skip_serializing_if = "Option::is_none")]

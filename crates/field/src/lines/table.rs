@@ -126,42 +126,42 @@ decision_table! {
     pub LINE: fn line(enum Phase, Situation) -> Action {
         /// The outputs are not set.
         Checking {
-            1:  devices: Tripped                      => Fail(Tripped);
+            1:  devices: Tripped                 => Fail(Tripped);
         }
         /// The outputs are set; the device has not shown yet that it has taken the order.
         Setting {
-            2:  devices: Tripped                      => Fail(Unknown);
+            2:  devices: Tripped                 => Fail(Unknown);
         }
         /// The device has taken the order, or does not show it.
         Running {
-            3:  devices: Tripped,     start: Hidden   => Fail(Tripped);
-            4:  devices: Tripped,     start: Shown    => Fail(Interrupted);
+            3:  devices: Tripped, start: Hidden  => Fail(Tripped);
+            4:  devices: Tripped, start: Shown   => Fail(Interrupted);
         }
         any {
-            5:  fault: Broken                         => Fail(Fault);
+            5:  fault: Broken                    => Fail(Fault);
         }
         Setting | Running {
-            6:  during: Broken                        => Fail(Lost);
+            6:  during: Broken                   => Fail(Lost);
         }
         Checking {
-            7:  needs: No                             => Fail(Needs);
-            8:  needs: Yes,           start: Shown    => Set          -> Setting;
-            9:  needs: Yes,           start: Hidden   => Set          -> Running;
-            10: time: Over                            => Fail(Needs);
-            11: time: Left                            => Wait;
+            7:  needs: No                        => Fail(Needs);
+            8:  needs: Yes, start: Shown         => Set    -> Setting;
+            9:  needs: Yes, start: Hidden        => Set    -> Running;
+            10: time: Over                       => Fail(Needs);
+            11: time: Left                       => Wait;
         }
         Setting {
-            12: begun: Yes                            => Begin        -> Running;
+            12: begun: Yes                       => Begin  -> Running;
         }
         Setting | Running {
-            13: done: Reached                         => End;
+            13: done: Reached                    => End;
         }
         Setting {
-            14: start_time: Over                      => Fail(NotBegun);
+            14: start_time: Over                 => Fail(NotBegun);
         }
         Setting | Running {
-            15: time: Over,           done: Missing   => Fail(NotDone);
-            16: otherwise                             => Wait;
+            15: time: Over, done: Missing        => Fail(NotDone);
+            16: otherwise                        => Wait;
         }
     }
 }

@@ -35,7 +35,9 @@ impl Trial<'_, '_> {
             let how = if ended.failure.is_empty() { "finished" } else { ended.failure.as_str() };
             let text = format!("tick {}: {}: {how}", ended.tick.0, ended.command);
             observer.say(ended.tick, &text);
-            self.has_repeated |= !ended.of_job || !ended.failure.is_empty();
+            // A run repeats a failed command by itself (--retry), but no line of the workstation.
+            let is_command = self.operator.command_at(ended.line).is_some();
+            self.has_failed_line |= !is_command && !ended.failure.is_empty();
             self.ended.push((ended.tick, text));
             if ended.of_job && ended.failure.is_empty() {
                 self.compare(ended.line, &ended.command);
@@ -94,7 +96,7 @@ impl Trial<'_, '_> {
         let (reason, detail) = self.why(verdict);
         let judged = self.judged();
         let outage = self.kind().outage().map(|_| OutageResult {
-            attended: self.outages.has_released() || self.has_repeated,
+            attended: self.outages.has_released() || self.has_failed_line,
             late: (verdict == Verdict::Done).then(|| self.branch.at().since(self.parent.end_of(self.goal))),
         });
         let digest = (*self.kind() == Kind::None).then(|| self.branch.closed.digest().to_string());
