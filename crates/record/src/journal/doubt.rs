@@ -81,15 +81,15 @@ decision_table! {
     /// DOUBT: how a resumed controller treats each estimate. If the record does not reach to the end of the run, the
     /// command under way may have changed the cell since then. A log does not contain the delayed actions of the job.
     pub DOUBT: fn doubt(self::Evidence) -> self::Fate {
-        1: end: Reached                                                                        => Keep;
-        2: end: Logged,                       estimate: JobLine                                => Ask;
-        3: end: Logged                                                                         => Keep;
-        4: end: CutOff | Trouble | Continued, estimate: HeldObject | JobLine                   => Ask;
-        5: end: CutOff | Trouble | Continued, estimate: RobotPlace | PlacedObject              => Drop;
-        6: end: CutOff | Trouble | Continued, estimate: PedestalPart | Confirmation            => Drop;
-        7: end: CutOff | Trouble | Continued, estimate: CarriedItem                            => Drop;
-        8: end: CutOff | Trouble | Continued, estimate: Unfinished | Calibration               => Keep;
-        9: end: CutOff | Trouble | Continued, estimate: PendingUpdates                         => Keep;
+        1: end: Reached                                                              => Keep;
+        2: end: Logged,                       estimate: JobLine                      => Ask;
+        3: end: Logged                                                               => Keep;
+        4: end: CutOff | Trouble | Continued, estimate: HeldObject | JobLine         => Ask;
+        5: end: CutOff | Trouble | Continued, estimate: RobotPlace | PlacedObject    => Drop;
+        6: end: CutOff | Trouble | Continued, estimate: PedestalPart | Confirmation  => Drop;
+        7: end: CutOff | Trouble | Continued, estimate: CarriedItem                  => Drop;
+        8: end: CutOff | Trouble | Continued, estimate: Unfinished | Calibration     => Keep;
+        9: end: CutOff | Trouble | Continued, estimate: PendingUpdates               => Keep;
     }
 }
 

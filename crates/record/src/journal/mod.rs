@@ -321,7 +321,10 @@ impl Writer {
             let saved = cell.map_or(Ok(()), |cell| replace::replace(&cell_beside(&self.path), &cell));
             let trouble = written.and(saved).err().map(|error| error.to_string());
             state = locked(shared);
-            state.trouble = trouble;
+            // A saved cell alone does not show that the disk accepts entries.
+            if is_new || trouble.is_some() {
+                state.trouble = trouble;
+            }
         }
     }
 
@@ -451,6 +454,25 @@ mod tests {
         }
         let trouble = journal.finish(Some(&entry(200))).expect("the file is gone");
         assert!(trouble.contains("was removed during the run"), "{trouble}");
+    }
+
+    #[test]
+    fn saved_cell_does_not_end_the_trouble_of_entries() {
+        let (_directory, path, mut journal) = started(None);
+        fs::remove_file(&path).unwrap();
+        journal.tick(&entry(HEARTBEAT));
+        let soon = |is_over: &mut dyn FnMut() -> bool| {
+            (0..10_000).any(|_| {
+                thread::sleep(std::time::Duration::from_millis(1));
+                is_over()
+            })
+        };
+        assert!(soon(&mut || journal.trouble().is_some()), "the entry is not written");
+        assert!(soon(&mut || {
+            journal.save_cell(b"a cell".to_vec());
+            cell_beside(&path).exists()
+        }));
+        assert!(journal.finish(None).is_some());
     }
 
     #[test]
