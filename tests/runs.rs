@@ -21,6 +21,7 @@ mod output;
 mod readme;
 mod remedies;
 mod replays;
+mod resumed;
 mod seeds;
 mod survival;
 mod traces;

@@ -28,7 +28,8 @@ const DEVICES: [(&str, &str); 3] =
     [("arm", "127.0.0.1:21502"), ("fixture", "127.0.0.1:21503"), ("pedestal", "127.0.0.1:21504")];
 const ARM: usize = 0;
 const WORDS: (u16, u16) = (32, 16); // registers of the emulated couplers: inputs, outputs
-const SUPPLY: u16 = 1 << 7; // `grip.supply` in the first output word of the arm
+const SUPPLY: u16 = 1 << 7; // `grip.supply` and `tool.close` in the first output word of the arm
+const TOOL_CLOSE: u16 = 1 << 11;
 const TICKS: u64 = 25; // ticks of a run in real time: one second
 
 /// Three couplers, and the shipped mapping with their addresses.
@@ -192,6 +193,30 @@ fn outputs_that_are_on_refuse_the_start_by_name() {
     let error = couplers.refused(couplers.config()).to_string();
     assert!(error.contains("arm at 127.0.0.1:") && error.contains("grip.supply on"), "{error}");
     assert_eq!(couplers.outputs_of(ARM), SUPPLY, "nothing was written");
+}
+
+#[test]
+fn resumed_run_keeps_its_outputs_off_and_refuses_unknown_ones() {
+    let couplers = Couplers::new();
+    let journal = couplers.directory.path().join("run.journal");
+    let config = RunConfig { journal: Some(journal.clone()), ..couplers.config() };
+    let mut run = Run::new(config, Box::new(())).expect("all are ready");
+    while run.last_tick().0 < 2 * TICKS && run.step() {}
+    drop(run);
+    assert_eq!(couplers.outputs_of(ARM), 0);
+    let resume = RunConfig { resume: Some(journal), ..couplers.config() };
+    couplers.stations[ARM].with(|coupler| coupler.outputs_mut()[0] = TOOL_CLOSE);
+    let error = couplers.refused(resume.clone()).to_string();
+    assert!(error.contains("arm at 127.0.0.1:") && error.contains("tool.close on"), "{error}");
+    assert_eq!(couplers.outputs_of(ARM), TOOL_CLOSE, "nothing was written");
+    couplers.stations[ARM].with(|coupler| coupler.outputs_mut()[0] = 0);
+    let mut run = Run::new(resume, Box::new(())).expect("no output is on");
+    let writes = couplers.stations[ARM].with(|coupler| coupler.writes());
+    for _ in 0..TICKS {
+        assert!(run.step());
+        assert_eq!(couplers.outputs_of(ARM), 0, "no output is switched on before a command");
+    }
+    assert!(couplers.stations[ARM].with(|coupler| coupler.writes()) > writes + TICKS / 2);
 }
 
 #[test]
