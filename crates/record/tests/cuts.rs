@@ -1,8 +1,6 @@
 //! A thousand records of a run that were cut off: journals and logs, at record boundaries and at random bytes. Each is
 //! refused, or read as the last complete knowledge with doubt, never as an older one without.
 
-#![expect(clippy::print_stdout, reason = "the figures of the cuts are printed")]
-
 use std::path::Path;
 
 use interfaces::{CommonMemory, ExternalInputs};
@@ -32,7 +30,7 @@ impl Random {
 
 fn entry(sequence: u64) -> Entry {
     let mut entry = Entry { tick: Tick(100 + sequence), line: 3, ..Entry::default() };
-    entry.memory.emove.estimates.empty = sequence % 3 == 0;
+    entry.memory.emove.estimates.empty = sequence.is_multiple_of(3);
     entry
 }
 
