@@ -1,4 +1,4 @@
-//! An emulated BK9000, and a controller that switches its outputs: two programs to test networks and other programs.
+//! An emulated coupler, a BK9000 or another kind, and a controller that switches its outputs: two programs to test networks and other programs.
 //!
 //! `coupler station 127.0.0.1:1502` prints changes of the outputs, and the greatest age of an image that was carried
 //! out. `coupler controller 127.0.0.1:1502 60` runs for 60 s with an output on, releases a tripped device, and prints
@@ -32,11 +32,11 @@ fn prepare() {
     }
 }
 
-fn station(address: SocketAddr) -> Result<(), Box<dyn Error>> {
+fn station(address: SocketAddr, kind: Kind) -> Result<(), Box<dyn Error>> {
     // Its threads inherit the priority.
     prepare();
-    let station = Station::open(address, Emulated::new(Kind::Bk9000, 1, 8, 4))?;
-    println!("a BK9000 at {}: 8 registers of inputs, 4 of outputs", station.address());
+    let station = Station::open(address, Emulated::new(kind, 1, 8, 4))?;
+    println!("a {kind} at {}: 8 registers of inputs, 4 of outputs", station.address());
     let (mut written, mut shown, mut oldest) = (0, (u16::MAX, 0, 0), 0);
     loop {
         sleep(Duration::from_millis(1));
@@ -97,8 +97,9 @@ fn controller(address: SocketAddr, seconds: u64) -> Result<(), Box<dyn Error>> {
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
-        ["station", address] => station(address.parse()?),
+        ["station", address] => station(address.parse()?, Kind::Bk9000),
+        ["station", address, kind] => station(address.parse()?, Kind::from_text(kind).ok_or("unknown kind")?),
         ["controller", address, seconds] => controller(address.parse()?, seconds.parse()?),
-        _ => Err("expected: station ADDRESS:PORT, or controller ADDRESS:PORT SECONDS".into()),
+        _ => Err("expected: station ADDRESS:PORT [KIND], or controller ADDRESS:PORT SECONDS".into()),
     }
 }
