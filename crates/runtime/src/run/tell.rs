@@ -82,7 +82,8 @@ impl Run {
 
     /// Publish the couplers and their points after a tick to other programs.
     pub(super) fn publish_field(&mut self, tick: Tick) {
-        let inputs = &self.closed.external().devices;
+        // The words of the couplers are newer than the inputs of this tick.
+        let inputs = self.closed.inputs();
         if let Some(desk) = self.closed.workstation.field.as_deref().map(Field::desk) {
             self.runner.show_field(|| view_of_run(tick, desk, inputs));
         }
