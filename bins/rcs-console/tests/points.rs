@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use executive::memory::{
-    Text,
+    Attached, RunName, Text,
     field::{CouplerView, FieldView, PointView},
 };
 use programs::rcs_console::{
@@ -23,22 +23,30 @@ impl Observer for Silent {
     fn message(&mut self, _: &str) {}
 }
 
-/// A run with emulated couplers, in which the arm is lost for a second.
-fn log(directory: &Path) -> Recorded {
+/// The log of a run with emulated couplers, in which the arm is lost for a second, and what the run published.
+fn log(directory: &Path) -> (Recorded, Vec<FieldView>) {
     let (path, faults) = (directory.join("cut.mcap"), directory.join("cut.toml"));
     std::fs::write(&faults, "[[fault]]\nkind = \"field-cut\"\ndevice = \"arm\"\nat = 100\nticks = 20\n")
         .expect("a fault file");
     let data = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../data");
+    let name = RunName::unique("points");
     let config = RunConfig {
+        name: Some(name.clone()),
         faults: Some(faults),
         log: LogTarget::File(path.clone()),
-        shared_memory: false,
         ticks: Some(140),
         field: Some("sim:station".parse().expect("a mapping")),
         ..RunConfig::new(data, "linkbar")
     };
-    let _ = Run::new(config, Box::new(Silent)).expect("the run begins").complete();
-    Recorded::open(&path).expect("the log can be read")
+    let mut run = Run::new(config, Box::new(Silent)).expect("the run begins");
+    let reader = Attached::open(&name).expect("the run shows its buffers");
+    assert_eq!(reader.field(), Ok(None), "before the first tick");
+    let mut published = Vec::new();
+    while run.step() {
+        published.push(reader.field().expect("it is legal").expect("there are couplers"));
+    }
+    drop(run.complete());
+    (Recorded::open(&path).expect("the log can be read"), published)
 }
 
 fn model(source: &dyn Source, tick: u64) -> Model {
@@ -56,7 +64,21 @@ fn screen(model: &Model, source: &dyn Source, width: usize, height: usize) -> St
 #[test]
 fn points_of_a_log_are_shown_in_every_width() {
     let directory = tempfile::tempdir().expect("a directory");
-    let log = log(directory.path());
+    let (log, published) = log(directory.path());
+    for view in &published {
+        // The log has the state after a tick with the next one.
+        let tick = view.tick.next();
+        let Some(picture) = log.picture(tick.0).filter(|picture| picture.tick == tick) else { continue };
+        let logged = log.field(&picture).expect("the log has the couplers");
+        assert_eq!((logged.devices, logged.point_count), (view.devices, view.point_count), "tick {tick}");
+        for (logged, shown) in logged.points.iter().zip(&view.points) {
+            let is_of_the_box = logged.name.as_str().starts_with("joystick.");
+            // The joystick box of the operator replaces its inputs at the start of a tick.
+            let value = if is_of_the_box { logged.value } else { shown.value };
+            assert_eq!(*logged, PointView { value, ..*shown }, "tick {tick}");
+        }
+    }
+    assert!(published.len() > 100, "{} ticks", published.len());
     let fresh = model(&log, 90);
     insta::assert_snapshot!("points-80", screen(&fresh, &log, 80, 24));
     let mut late = model(&log, 108);
