@@ -15,7 +15,7 @@ use zenoh::{Session, Wait as _, query::ConsolidationMode};
 
 use crate::{
     native::{Claim, connect, router},
-    shop::{CELL, Shop, free_port, within},
+    shop::{CELL, Shop, eventually, free_port},
 };
 
 const VICTIM: &str = "hwsc-1";
@@ -129,9 +129,14 @@ fn speak(session: &Session, id: &str) -> (Vec<String>, u32) {
 
 /// Numbers of the last command and of the last mailgram that the run has read.
 fn echo(claim: &Claim) -> (u16, u16) {
-    let frames = claim.frames();
-    let (_, data) = frames.iter().find(|(address, _)| *address == HWSC_STATUS.address).unwrap();
-    let status = status::decode(data).unwrap();
+    let mut data = Vec::new();
+    let is_known = eventually(|| {
+        let found = claim.frames().into_iter().find(|(address, _)| *address == HWSC_STATUS.address);
+        data = found.map(|(_, data)| data).unwrap_or_default();
+        !data.is_empty()
+    });
+    assert!(is_known, "the run has no status");
+    let status = status::decode(&data).unwrap();
     (status.echo, status.mailgram_echo)
 }
 
@@ -191,7 +196,7 @@ fn a_neighbour_refuses_a_gateway_with_another_name() {
     std::fs::copy(keys.join("other.pem"), keys.join("t3.pem")).unwrap();
     std::fs::copy(keys.join("other.key"), keys.join("t3.key")).unwrap();
     let mut gateway = shop.start_serve(&["workstation=hwsc-1"]);
-    assert_eq!(gateway.finish(10.0).code(), Some(2));
+    assert_eq!(gateway.finish().code(), Some(2));
     assert!(gateway.errors().contains("common name t3, found \"other\""), "{}", gateway.errors());
     // The same with a program that does not check its own certificate.
     let rogue = crate::native::rogue_gateway(&keys, "other", &shop.endpoint()).unwrap();
@@ -223,7 +228,7 @@ fn a_compromised_router_can_neither_command_nor_read_claims() {
     let count = Arc::clone(&states);
     let take = move |_| *count.lock().unwrap() += 1;
     router.declare_subscriber("rcs/*/status/run").callback(take).background().wait().unwrap();
-    assert!(within(5.0, || *states.lock().unwrap() > 0), "the router is not connected");
+    assert!(eventually(|| *states.lock().unwrap() > 0), "the router is not connected");
     let before = echo(&claim);
     let (heard, _) = listen(&router, &claim.id);
     assert!(claim.is_alive());

@@ -19,6 +19,8 @@ use tungstenite::{
     Error, HandshakeError, Message, WebSocket, client::IntoClientRequest as _, http::HeaderValue,
 };
 
+use crate::shop::TIME_LIMIT;
+
 pub const HERE: Ipv4Addr = Ipv4Addr::LOCALHOST;
 const REQUEST: u32 = 9; // the service that takes any line of an operator
 
@@ -133,7 +135,7 @@ pub fn tcp(from: Ipv4Addr, port: u16) -> io::Result<TcpStream> {
     bind(&socket, &SocketAddr::from((from, 0)))?;
     connect(&socket, &SocketAddr::from((HERE, port)))?;
     let stream = TcpStream::from(socket);
-    stream.set_read_timeout(Some(Duration::from_secs(20)))?;
+    stream.set_read_timeout(Some(TIME_LIMIT))?;
     Ok(stream)
 }
 
@@ -200,21 +202,30 @@ impl Live {
         answer.unwrap()
     }
 
-    /// Reads for a time, which also answers pings. Returns true if the run has sent its time.
-    pub fn watch(&mut self, time: Duration) -> bool {
-        let until = Instant::now() + time;
-        let mut has_time = false;
-        while Instant::now() < until {
-            has_time |= self
-                .next(|message| Some(matches!(message, Message::Binary(bytes) if bytes[0] == 2)))
-                .unwrap();
+    /// Reads for a time, which also answers pings.
+    pub fn watch(&mut self, time: Duration) {
+        let start = Instant::now();
+        while start.elapsed() < time {
+            self.socket.read().unwrap();
         }
-        has_time
     }
 
-    pub fn end(&mut self) -> Duration {
-        let began = Instant::now();
-        while self.socket.read().is_ok() {}
-        began.elapsed()
+    /// Returns true if the run continues to send its time, in each tick, on this connection.
+    pub fn sees_run(&mut self) -> bool {
+        let is_time = |message: &Message| matches!(message, Message::Binary(bytes) if bytes[0] == 2);
+        (0..5).all(|_| self.next(|message| is_time(message).then_some(())).is_ok())
+    }
+
+    /// Reads until the connection ends. Returns false if it stays.
+    pub fn ends(&mut self) -> bool {
+        let start = Instant::now();
+        while start.elapsed() < TIME_LIMIT {
+            match self.socket.read() {
+                Ok(_) => {}
+                Err(Error::Io(error)) if error.kind() == io::ErrorKind::WouldBlock => return false,
+                Err(_) => return true,
+            }
+        }
+        false
     }
 }

@@ -7,7 +7,7 @@ use std::{
     process::{Command, Stdio},
 };
 
-use crate::shop::{CELL, Shop, make_keys, within};
+use crate::shop::{CELL, Shop, eventually, make_keys};
 
 pub fn openssl(shop: &Shop, arguments: &[&str]) -> String {
     let mut command = Command::new("openssl");
@@ -91,7 +91,7 @@ fn wrong_certificates_are_refused_and_logged_with_the_reason() {
         let said = openssl(&shop, &arguments.iter().map(String::as_str).collect::<Vec<_>>());
         assert!(said.contains("alert"), "{what}: {said}");
         assert!(
-            within(2.0, || gateway.errors().contains(reason)),
+            eventually(|| gateway.errors().contains(reason)),
             "{what}: no {reason} in {}",
             gateway.errors()
         );
@@ -117,7 +117,7 @@ fn unusable_keys_addresses_and_options_are_named() {
     let keys = shop.path("keys");
     let fails = |allow: &[&str], expected: &str| {
         let mut gateway = shop.start_serve(allow);
-        assert_eq!(gateway.finish(10.0).code(), Some(2), "{}", gateway.errors());
+        assert_eq!(gateway.finish().code(), Some(2), "{}", gateway.errors());
         assert!(gateway.errors().contains(expected), "expected {expected:?} in {}", gateway.errors());
     };
     fails(&["workstaton=hwsc-1"], "expected workstation, data-system, pedestal, vision, operator or monitor");

@@ -34,10 +34,14 @@ impl CutLine {
         Self { port: own, is_cut }
     }
 
+    pub fn set_cut(&self, is_cut: bool) {
+        self.is_cut.store(is_cut, Ordering::SeqCst);
+    }
+
     pub fn cut(&self, time: Duration) {
-        self.is_cut.store(true, Ordering::SeqCst);
+        self.set_cut(true);
         thread::sleep(time);
-        self.is_cut.store(false, Ordering::SeqCst);
+        self.set_cut(false);
     }
 }
 

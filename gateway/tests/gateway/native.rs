@@ -22,6 +22,8 @@ use zenoh::{
     sample::Sample,
 };
 
+use crate::shop::{TIME_LIMIT, eventually};
+
 /// Connect to a gateway with the certificate `name`, as a client without access control.
 pub fn connect(keys: &Path, name: &str, endpoint: &str) -> Result<Session, zenoh::Error> {
     let file = |name: String| keys.join(name);
@@ -64,7 +66,7 @@ impl Claim {
         let subscriber = session.declare_subscriber(format!("{front}/out")).callback(take).wait().unwrap();
         let token = session.liveliness().declare_token(format!("{front}/alive")).wait().unwrap();
         let replies = session.get(format!("rcs/{cell}/open/workstation/{name}")).payload(id);
-        let replies = replies.timeout(Duration::from_secs(5)).wait().unwrap();
+        let replies = replies.timeout(TIME_LIMIT).wait().unwrap();
         match replies.into_iter().next().map(zenoh::query::Reply::into_result) {
             Some(Ok(_)) => {}
             Some(Err(error)) => return Err(String::from_utf8_lossy(&error.payload().to_bytes()).into_owned()),
@@ -116,9 +118,11 @@ impl Claim {
 
     pub fn is_alive(&self) -> bool {
         let before = self.pulse.load(Ordering::SeqCst);
+        // An attack takes some time to have an effect.
         thread::sleep(Duration::from_millis(500));
+        let continues = eventually(|| self.pulse.load(Ordering::SeqCst) > before);
         let frames = self.frames();
-        self.pulse.load(Ordering::SeqCst) > before
+        continues
             && frames.iter().any(|(address, _)| *address == PULSE)
             && frames.iter().all(|(address, _)| *address != DISCONNECT)
     }

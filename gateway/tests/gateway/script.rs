@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::shop::{Process, free_port, program, within};
+use crate::shop::{Process, eventually, free_port, program};
 
 #[test]
 fn script_starts_five_cells_that_the_monitor_sees_executing_and_ends_all_of_them() {
@@ -23,7 +23,7 @@ fn script_starts_five_cells_that_the_monitor_sees_executing_and_ends_all_of_them
         String::from_utf8_lossy(&output.stdout).into_owned()
     };
     let mut page = String::new();
-    let all_execute = within(60.0, || {
+    let all_execute = eventually(|| {
         page = watch();
         let is_seen = |cell: &str| {
             let line = page.lines().rev().find(|line| line.starts_with(cell));
@@ -36,8 +36,8 @@ fn script_starts_five_cells_that_the_monitor_sees_executing_and_ends_all_of_them
     assert!(all_execute, "{page}\n{}", shop.errors());
     println!("{page}");
     shop.terminate();
-    assert!(shop.finish(20.0).success());
-    assert!(within(5.0, || (0..=5).all(|more| is_free(port + more))), "a gateway is still running");
+    assert!(shop.finish().success());
+    assert!(eventually(|| (0..=5).all(|more| is_free(port + more))), "a gateway is still running");
     assert!(!directory.path().join("c3.sock").exists(), "a run has left its socket");
 }
 

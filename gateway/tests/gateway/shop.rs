@@ -21,6 +21,9 @@ use rcs_core::name::Name16;
 use tempfile::TempDir;
 
 pub const CELL: &str = "t3";
+/// Limits for a busy machine. They detect that something never happens; benchmarks measure times.
+pub const TIME_LIMIT: Duration = Duration::from_secs(60); // of each action
+const RUN_LIMIT: Duration = Duration::from_secs(600); // of a process that ends by itself, after a shift at most
 
 /// A program of the main workspace; RCS_PROGRAMS names another directory than `target/release`.
 pub fn program(name: &str) -> PathBuf {
@@ -47,17 +50,17 @@ impl Process {
     }
 
     pub fn wait_for(&self, text: &str) {
-        assert!(within(10.0, || self.errors().contains(text)), "expected {text:?} in:\n{}", self.errors());
+        assert!(eventually(|| self.errors().contains(text)), "expected {text:?} in:\n{}", self.errors());
     }
 
-    pub fn finish(&mut self, seconds: f64) -> ExitStatus {
+    pub fn finish(&mut self) -> ExitStatus {
         let child = &mut self.child;
         let mut status = None;
-        let ended = within(seconds, || {
+        let ended = within(RUN_LIMIT, || {
             status = child.try_wait().unwrap();
             status.is_some()
         });
-        assert!(ended, "still running after {seconds} s:\n{}", self.errors());
+        assert!(ended, "still running after {RUN_LIMIT:?}:\n{}", self.errors());
         status.unwrap()
     }
 
@@ -81,14 +84,19 @@ impl Drop for Process {
     }
 }
 
-/// Returns true if a condition holds within a time. It is checked at intervals of 0.1 s, because a run blocks a client
-/// that it has refused eight times in a second (docs/neighbours.md "Security").
-pub fn within(seconds: f64, mut condition: impl FnMut() -> bool) -> bool {
-    let until = Instant::now() + Duration::from_secs_f64(seconds);
+/// Waits until a condition holds. Returns false if it does not hold within [`TIME_LIMIT`].
+pub fn eventually(condition: impl FnMut() -> bool) -> bool {
+    within(TIME_LIMIT, condition)
+}
+
+/// The condition is checked at intervals of 0.1 s, because a run blocks a client that it has refused eight times in a
+/// second (docs/neighbours.md "Security").
+fn within(limit: Duration, mut condition: impl FnMut() -> bool) -> bool {
+    let start = Instant::now();
     loop {
         let holds = condition();
-        if holds || Instant::now() >= until {
-            return holds && Instant::now() < until;
+        if holds || start.elapsed() >= limit {
+            return holds;
         }
         thread::sleep(Duration::from_millis(100));
     }
@@ -134,7 +142,7 @@ impl Shop {
         // A run that was killed leaves its socket.
         let _ = fs::remove_file(self.run_socket());
         let run = Process::start(&mut command, self.path("run.err"));
-        assert!(within(20.0, || self.run_socket().exists()), "no socket:\n{}", run.errors());
+        assert!(eventually(|| self.run_socket().exists()), "no socket:\n{}", run.errors());
         run
     }
 
@@ -234,7 +242,7 @@ pub struct Hwsc {
 impl Hwsc {
     pub fn connect(path: &Path) -> Result<Self, String> {
         let stream = UnixStream::connect(path).map_err(|error| error.to_string())?;
-        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+        stream.set_read_timeout(Some(TIME_LIMIT)).unwrap();
         let mut hwsc = Self {
             session: Session::neighbour(Role::Workstation, Instant::now()),
             stream,

@@ -11,7 +11,7 @@ use zenoh::{Wait as _, query::ConsolidationMode, sample::SampleKind};
 
 use crate::{
     native::connect,
-    shop::{CELL, Process, Shop, free_port, make_keys, start_router, within},
+    shop::{CELL, Process, Shop, TIME_LIMIT, eventually, free_port, make_keys, start_router},
 };
 
 #[test]
@@ -46,13 +46,13 @@ fn monitor_sees_the_run_its_mailboxes_and_the_end_of_the_gateway() {
     let start = Instant::now();
     while !states.lock().unwrap().iter().any(finished) {
         hwsc.tick().unwrap();
-        assert!(start.elapsed() < Duration::from_secs(2), "{:?}", states.lock().unwrap());
+        assert!(start.elapsed() < TIME_LIMIT, "{:?}", states.lock().unwrap());
     }
     assert!(mailboxes.lock().unwrap().contains(&format!("rcs/{CELL}/status/mailbox/F6200")));
     let answer = monitor.get("rcs/*/status/run").consolidation(ConsolidationMode::None).wait().unwrap();
     assert!(answer.recv().unwrap().result().is_ok());
     gateway.kill();
-    assert!(within(1.0, || *gone.lock().unwrap()), "the killed gateway is not missed");
+    assert!(eventually(|| *gone.lock().unwrap()), "the killed gateway is not missed");
 }
 
 #[test]
@@ -70,7 +70,7 @@ fn router_lets_a_cell_write_its_own_status_only() {
     };
     monitor.declare_subscriber("rcs/*/status/run").callback(take).background().wait().unwrap();
     let writers: Vec<_> = ["c2", "mes", "nobody"].map(|name| connect(&keys, name, &endpoint).unwrap()).into();
-    let is_heard = within(5.0, || {
+    let is_heard = eventually(|| {
         for writer in &writers {
             for cell in ["c1", "c2"] {
                 writer.put(format!("rcs/{cell}/status/run"), "{}").wait().unwrap();
@@ -124,11 +124,11 @@ fn monitor_sees_twenty_cells_through_a_router_and_misses_a_killed_one() {
     };
     let monitor = connect(&keys, "mes", &endpoint).unwrap();
     let (here, start) = (watch(&monitor), Instant::now());
-    assert!(within(2.0, || here.lock().unwrap().len() == CELLS), "{:?}", here.lock().unwrap());
+    assert!(eventually(|| here.lock().unwrap().len() == CELLS), "{:?}", here.lock().unwrap());
     println!("{CELLS} cells seen after {:?}", start.elapsed());
     gateways[6].kill();
     let start = Instant::now();
-    assert!(within(1.0, || !here.lock().unwrap().contains("c07")), "the killed cell is not missed");
+    assert!(eventually(|| !here.lock().unwrap().contains("c07")), "the killed cell is not missed");
     println!("killed cell missed after {:?}", start.elapsed());
     // A restarted router has all cells again within a second or two: gateways try once a second.
     drop(monitor);
@@ -137,6 +137,6 @@ fn monitor_sees_twenty_cells_through_a_router_and_misses_a_killed_one() {
     let start = Instant::now();
     let monitor = connect(&keys, "mes", &endpoint).unwrap();
     let here = watch(&monitor);
-    assert!(within(2.5, || here.lock().unwrap().len() == CELLS - 1), "{:?}", here.lock().unwrap());
+    assert!(eventually(|| here.lock().unwrap().len() == CELLS - 1), "{:?}", here.lock().unwrap());
     println!("all cells are back {:?} after the restart of the router", start.elapsed());
 }
