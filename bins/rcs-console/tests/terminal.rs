@@ -4,7 +4,7 @@ use std::{
     fs::File,
     io::{Read, Write},
     num::NonZero,
-    os::fd::OwnedFd,
+    os::{fd::OwnedFd, unix::net::UnixStream},
     path::{Path, PathBuf},
     process::{Child, Command},
     sync::{
@@ -28,7 +28,7 @@ use rustix::{
 const LINES: NonZero<u16> = NonZero::new(24).unwrap();
 const COLUMNS: NonZero<u16> = NonZero::new(80).unwrap();
 const TO_SAFE: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
-const PATIENCE: Duration = Duration::from_secs(30); // time limit for a text to appear on a busy machine
+const PATIENCE: Duration = Duration::from_secs(60); // of each action, for a busy machine
 
 struct Silent;
 
@@ -210,15 +210,15 @@ fn begin(config: RunConfig) -> Running {
         let outcome = Run::new(config, Box::new(Silent)).unwrap().complete();
         outcome.steps.iter().map(|step| step.outcome.text()).collect()
     });
-    // A run exists once it has published its first tick.
+    // A run exists once it has published its first tick. It listens to operators after that.
     let begun = Instant::now();
     let is_alive = || executive::memory::list().unwrap().iter().any(|run| run.name == name && run.alive);
     let listed = || is_alive() && executive::memory::starting(&name).is_none();
-    while !listed() {
+    let listens = || UnixStream::connect(executive::memory::operator_socket(&name)).is_ok();
+    while !(listed() && listens()) {
         assert!(begun.elapsed() < PATIENCE, "the run does not begin");
         thread::sleep(Duration::from_millis(50));
     }
-    thread::sleep(Duration::from_millis(200));
     (run, stop)
 }
 
