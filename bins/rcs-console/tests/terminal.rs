@@ -258,12 +258,12 @@ fn all_screens_show_a_run_and_then_its_log() {
 #[test]
 fn operator_jogs_recovers_from_an_emergency_stop_and_finishes() {
     let directory = tempfile::tempdir().unwrap();
-    let job = directory.path().join("home.job");
-    std::fs::write(&job, TO_SAFE).unwrap();
     let name = format!("operated-{}", std::process::id());
-    let (run, _) = run(&name, &directory.path().join("home.mcap"), job.to_str().unwrap(), 10);
+    let (run, _) = waiting_run(directory.path(), &shipped(), &name, 10);
     let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);
-    console.wait_for("OPERATOR");
+    console.wait_for("the job waits");
+    // The robot is stopped on its way.
+    console.press(":job go\r");
     console.press(" ");
     console.wait_for("the velocity knob is at 0");
     console.press(":PAUSE\r");

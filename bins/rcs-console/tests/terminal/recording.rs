@@ -97,8 +97,13 @@ fn recording_shows_the_start_up_and_a_taught_point() {
     let mut before = Client::connect(&socket, &"before".parse().unwrap()).unwrap();
     for line in ["estop terminals", "panel power off", "leave"] {
         let begun = Instant::now();
-        while let Err(why) = before.ask(line).unwrap() {
-            assert!(begun.elapsed() < PATIENCE, "{line}: {why}");
+        // On a busy machine an answer may be late; such a request is void.
+        loop {
+            let answer = before.ask(line);
+            if matches!(answer, Ok(Ok(_))) {
+                break;
+            }
+            assert!(begun.elapsed() < PATIENCE, "{line}: {answer:?}");
         }
     }
     let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);
