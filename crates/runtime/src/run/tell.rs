@@ -162,7 +162,7 @@ impl Run {
         let clock = if self.config.clock == ClockKind::Real { resume::now() } else { 0 };
         let entry = resume::entry(&self.closed, self.neighbours.job(), clock);
         journal.tick(&entry);
-        // A robot elsewhere goes on without this program, so the model of the other devices must be up to date.
+        // A robot elsewhere continues without this program, so the model of the other devices must be up to date.
         let causes = resume::causes(&entry);
         let is_changed = self.robot.is_elsewhere() && causes != self.saved;
         if (is_changed || tick.0.is_multiple_of(HEARTBEAT))

@@ -349,7 +349,7 @@ fn delayed_actions_that_have_started_do_not_start_again() {
 }
 
 #[test]
-fn line_that_may_have_begun_is_begun_again_only_after_a_question() {
+fn line_that_may_have_begun_needs_a_second_go() {
     let place = PlaceInJob { line: 1, is_begun: false, delayed: 0 };
     let resumed = || {
         let mut stage = Stage::commands();
