@@ -167,7 +167,7 @@ fn assert_resumed(scratch: &Scratch, job: &str, more: &[&str], kill: u32) {
 }
 
 #[test]
-#[ignore = "in real time, for a machine without other load: docs/evidence.md"]
+#[ignore = "in real time, for a machine without other load"]
 fn killed_run_with_a_robot_at_a_port_is_resumed() {
     for kill in 0..kills() {
         let scratch = Scratch::new("resumed-depc");
@@ -183,7 +183,7 @@ fn killed_run_with_a_robot_at_a_port_is_resumed() {
 }
 
 #[test]
-#[ignore = "in real time, for a machine without other load: docs/evidence.md"]
+#[ignore = "in real time, for a machine without other load"]
 fn killed_run_with_an_egm_robot_is_resumed() {
     for kill in 0..kills() {
         let scratch = Scratch::new("resumed-egm");
@@ -203,7 +203,7 @@ fn killed_run_with_an_egm_robot_is_resumed() {
 
 /// Robot, vise and tray are real for the run: the station of the cell lives on, and its watchdogs fire.
 #[test]
-#[ignore = "in real time, for a machine without other load: docs/evidence.md"]
+#[ignore = "in real time, for a machine without other load"]
 fn killed_run_with_devices_behind_couplers_is_resumed() {
     let scratch = Scratch::new("resumed-station");
     let (mapping, network) = free_station(&scratch);
@@ -246,7 +246,7 @@ fn free_station(scratch: &Scratch) -> (String, String) {
 
 /// One process of four is killed, so the run ends; the whole run is resumed from the journal of board 0.
 #[test]
-#[ignore = "in real time, for a machine without other load: docs/evidence.md"]
+#[ignore = "in real time, for a machine without other load"]
 fn split_run_that_has_lost_a_board_is_resumed() {
     let scratch = Scratch::new("resumed-split");
     let journal = scratch.file("run.journal").display().to_string();
