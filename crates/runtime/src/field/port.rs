@@ -120,8 +120,7 @@ impl FieldPort {
 
     /// The time after which the outputs that an interrupted run has left stay as they are.
     fn settling_time(&self) -> Duration {
-        let times =
-            self.mapping.devices.iter().filter(|device| device.plan.kind.facts().watchdog.is_some());
+        let times = self.mapping.devices.iter().filter(|device| device.plan.kind.facts().watchdog.is_some());
         let longest = times.map(|device| device.plan.watchdog_ms).max();
         longest.map_or(Duration::ZERO, |ms| Duration::from_millis(ms.into()) + READ_BACK)
     }
