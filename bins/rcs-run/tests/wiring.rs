@@ -84,7 +84,7 @@ impl Cell {
         let local = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
         let same = mistake.exchanged.is_some_and(|(_, _, same)| same);
         let open = |device: &field::Device| {
-            let exact = Emulated::of(&device.plan).unwrap();
+            let exact = Emulated::of(&device.plan);
             let coupler = if same { Emulated::new(Kind::Bk9000, 1, 40, 16) } else { exact };
             Some(Station::open(local, coupler).unwrap())
         };

@@ -350,7 +350,7 @@ fn delayed_actions_that_have_started_do_not_start_again() {
 
 #[test]
 fn line_that_may_have_begun_needs_a_second_go() {
-    let place = PlaceInJob { line: 1, is_begun: false, delayed: 0 };
+    let place = PlaceInJob { line: 1, is_begun: false, delayed: 0, is_asked: false };
     let resumed = || {
         let mut stage = Stage::commands();
         let lines = stage.hwsc.lines().to_vec();
