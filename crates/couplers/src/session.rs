@@ -215,7 +215,7 @@ impl Session {
         self.release(orders);
         match (orders.mode, self.report.state) {
             (Mode::End, _) => return self.finish(link).map_err(Stop::Fault),
-            (Mode::Watch, State::Running) => self.transfer(link, None)?,
+            (Mode::Watch, _) => self.transfer(link, None)?,
             (Mode::Run, State::Running) => self.write_unless_locked(link, &orders.words)?,
             _ => {
                 let safe = self.plan.safe;

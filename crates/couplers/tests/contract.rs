@@ -70,6 +70,19 @@ fn output_that_may_be_on_at_rest_is_adopted() {
     assert_eq!(run.outputs(), CLAMP);
 }
 
+/// A test of the inputs must not drop a part that an earlier run still holds.
+#[test]
+fn watched_device_that_trips_keeps_its_outputs() {
+    let mut run = Run::of(plan());
+    run.device.coupler_mut().outputs_mut()[0] = CLAMP;
+    run.orders.mode = Mode::Watch;
+    run.ticks(3);
+    run.device.coupler_mut().set_fault(CouplerFault::Terminals(4));
+    run.ticks(50);
+    assert_eq!(run.state(), State::Tripped(Trip::Terminals(4)));
+    assert_eq!((run.device.coupler().writes(), run.outputs()), (0, CLAMP));
+}
+
 #[test]
 fn image_longer_than_that_of_the_device_is_refused() {
     let mut longer = plan();

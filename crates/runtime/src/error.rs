@@ -7,7 +7,7 @@ use executive::{boards::SplitError, memory::SharedMemoryError, serial::OpenError
 use os_io::console::shown;
 use os_io::text::amount;
 use plant::CellError;
-use record::RecordError;
+use record::{RecordError, journal::JournalError};
 use sessions::{
     data_system::{OutboxError, StoreError},
     network::{Address, listener::ListenError},
@@ -105,11 +105,8 @@ pub enum StartError {
          --shared-memory on"
     )]
     ResumeStandBy,
-    #[error(
-        "{0}; --resume LOG starts with the last image of its log; without --resume the run starts as after switching \
-         on, and knows nothing"
-    )]
-    Journal(#[from] record::journal::JournalError),
+    #[error("{}{}", .0, way_out(.0))]
+    Journal(#[from] JournalError),
     #[error(
         "the log {} cannot be used: {source}; without --resume the run starts as after switching on, and knows nothing",
         path.display()
@@ -173,5 +170,16 @@ impl StartError {
             Self::WrongData { wrong, .. } => wrong.iter().map(|line| format!("{}\n", shown(line))).collect(),
             _ => String::new(),
         }
+    }
+}
+
+/// What a person can do if the journal of an earlier run cannot be used.
+const fn way_out(error: &JournalError) -> &'static str {
+    match error {
+        JournalError::Read { .. } | JournalError::Format { .. } => {
+            "; --resume LOG starts with the last image of its log; without --resume the run starts as after switching \
+             on, and knows nothing"
+        }
+        _ => "",
     }
 }
