@@ -97,7 +97,7 @@ impl Subscriber for Warnings {
     fn exit(&self, _: &span::Id) {}
 }
 
-pub fn hear_zenoh() {
+pub fn log_zenoh_warnings() {
     // This fails only if a subscriber is already set, and this program sets only this one.
     let _ = tracing::subscriber::set_global_default(Warnings);
 }

@@ -47,7 +47,7 @@ const UNUSABLE: u8 = 2; // exit status of a usage error, or of keys and addresse
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    log::hear_zenoh();
+    log::log_zenoh_warnings();
     let result = match &cli.command {
         Command::Serve(arguments) => serve::serve(arguments),
         Command::Connect(arguments) => connect::connect(arguments),

@@ -13,7 +13,7 @@ use crate::address::Name;
 const SHORTEST: Duration = Duration::from_millis(100);
 const LONGEST: Duration = Duration::from_secs(2);
 /// Refusals expire after this time without a request.
-const FORGOTTEN: Duration = Duration::from_secs(10);
+const EXPIRY: Duration = Duration::from_secs(10);
 /// Greatest number of requests of one certificate that wait for the run. The last one waits for four of the longest
 /// pauses, less than the 12 s for which a client waits.
 const WAITING: u32 = 4;
@@ -41,7 +41,7 @@ impl Pace {
         if own.waiting >= WAITING {
             return None;
         }
-        if now.saturating_duration_since(own.next) >= FORGOTTEN {
+        if now.saturating_duration_since(own.next) >= EXPIRY {
             own.refusals = 0;
         }
         own.waiting += 1;
@@ -100,7 +100,7 @@ mod tests {
         }
         assert!(pace.ask(&name, now).unwrap() > Duration::ZERO);
         pace.answered(&name, true, now);
-        let later = now + LONGEST + FORGOTTEN;
+        let later = now + LONGEST + EXPIRY;
         assert_eq!(pace.ask(&name, later), Some(Duration::ZERO));
         pace.answered(&name, true, later);
         assert_eq!(pace.ask(&name, later), Some(SHORTEST));

@@ -17,16 +17,16 @@ use rustix::{
 };
 use tempfile::TempDir;
 
-const PATIENCE: Duration = Duration::from_secs(30); // generous time limit for a busy machine
+const TIME_LIMIT: Duration = Duration::from_secs(30); // generous time limit for a busy machine
 
 /// The position report at HOME, byte by byte.
 const HOME: [u8; 16] =
     [0xFF, 0xFF, 0x03, 0x00, 0x00, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x7A];
 /// The data command for a position 0.10 in away from HOME.
-const BESIDE: [u8; 16] =
+const MOVED_FRAME: [u8; 16] =
     [0x03, 0x00, 0x00, 0x00, 0x0A, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x70];
 /// The position report at that position.
-const BESIDE_REPORT: [u8; 16] =
+const MOVED_REPORT: [u8; 16] =
     [0xFF, 0xFF, 0x03, 0x00, 0x0A, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x70];
 
 struct Place(TempDir);
@@ -76,7 +76,7 @@ impl Cell {
     /// Waits for a line that contains `text`; returns the lines up to it.
     fn wait_for(&self, text: &str) -> Vec<String> {
         let mut seen = Vec::new();
-        let end = Instant::now() + PATIENCE;
+        let end = Instant::now() + TIME_LIMIT;
         loop {
             let left = end.saturating_duration_since(Instant::now());
             match self.screen.recv_timeout(left) {
@@ -95,7 +95,7 @@ impl Cell {
     }
 
     fn ended(&mut self) -> ExitStatus {
-        let end = Instant::now() + PATIENCE;
+        let end = Instant::now() + TIME_LIMIT;
         loop {
             if let Some(status) = self.child.try_wait().unwrap() {
                 return status;
@@ -129,7 +129,7 @@ impl Host {
 
     fn receive<const N: usize>(&mut self) -> [u8; N] {
         let (mut bytes, mut length) = ([0; N], 0);
-        let end = Instant::now() + PATIENCE;
+        let end = Instant::now() + TIME_LIMIT;
         while length < N {
             let left = end.saturating_duration_since(Instant::now());
             assert!(!left.is_zero(), "only {:02X?} came", &bytes[..length]);
@@ -149,23 +149,23 @@ fn restarted_host_finds_the_robot_in_place() {
     cell.wait_for("waits for a host");
     let mut host = Host::open(&place.link());
     assert_eq!(host.receive(), HOME);
-    host.send(&BESIDE);
+    host.send(&MOVED_FRAME);
     assert_eq!(host.receive(), [0x06]);
-    let mut garbled = BESIDE;
+    let mut garbled = MOVED_FRAME;
     garbled[4] = 0x0B;
     host.send(&garbled);
     assert_eq!(host.receive(), [0x15]);
     let sent = Instant::now();
     host.send(&[0x05]);
-    assert_eq!(host.receive(), BESIDE_REPORT);
+    assert_eq!(host.receive(), MOVED_REPORT);
     // Seventeen bytes at 9600 baud; a busy machine can only take longer.
     assert!(sent.elapsed() >= Duration::from_micros(17 * 1041), "{:?}", sent.elapsed());
 
     drop(host);
     cell.wait_for("WD1  CTS low");
     let mut host = Host::open(&place.link());
-    assert_eq!(host.receive(), BESIDE_REPORT);
-    host.send(&BESIDE);
+    assert_eq!(host.receive(), MOVED_REPORT);
+    host.send(&MOVED_FRAME);
     assert_eq!(host.receive(), [0x06]);
     cell.signal(Signal::TERM);
     assert_eq!(cell.ended().code(), Some(0));
@@ -246,7 +246,7 @@ fn faults_spoil_the_line_and_a_useless_plan_is_refused() {
     cell.wait_for("waits for a host");
     let mut host = Host::open(&place.link());
     assert_eq!(host.receive(), HOME);
-    host.send(&BESIDE);
+    host.send(&MOVED_FRAME);
     assert_eq!(host.receive(), [0x15]);
     cell.enter("status");
     cell.wait_for("16 faults on the line");

@@ -14,7 +14,7 @@ use std::{
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
-const PATIENCE: Duration = Duration::from_secs(60); // generous time limit for a busy machine
+const TIME_LIMIT: Duration = Duration::from_secs(60); // generous time limit for a busy machine
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data");
 const OUTPUTS: u16 = 0x800; // the register of the outputs of the fixture, and two of their bits
 const VISE_PARTIAL: u16 = 1 << 1;
@@ -67,8 +67,8 @@ impl Station {
 
     fn wait_for(&self, beginning: &str) -> String {
         let begun = Instant::now();
-        while begun.elapsed() < PATIENCE {
-            match self.screen.recv_timeout(PATIENCE) {
+        while begun.elapsed() < TIME_LIMIT {
+            match self.screen.recv_timeout(TIME_LIMIT) {
                 Ok(line) if line.starts_with(beginning) => return line,
                 Ok(_) => {}
                 Err(_) => break,
@@ -94,7 +94,7 @@ struct Client(TcpStream);
 impl Client {
     fn connect(address: SocketAddr) -> Self {
         let stream = TcpStream::connect(address).unwrap();
-        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        stream.set_read_timeout(Some(TIME_LIMIT)).unwrap();
         Self(stream)
     }
 
@@ -106,7 +106,7 @@ impl Client {
             if client.ask(&[4, 0, 3, 0, 1]).is_some() {
                 return client;
             }
-            assert!(begun.elapsed() < PATIENCE, "no connection is left");
+            assert!(begun.elapsed() < TIME_LIMIT, "no connection is left");
             thread::sleep(Duration::from_millis(10));
         }
     }
@@ -141,7 +141,7 @@ impl Client {
         let begun = Instant::now();
         while self.read(3) & (OPENED | PARTIAL | CLAMPED) != vise {
             assert_eq!(self.write(OUTPUTS, outputs), [16, 8, 0, 0, 1]);
-            assert!(begun.elapsed() < PATIENCE, "{outputs:#x}");
+            assert!(begun.elapsed() < TIME_LIMIT, "{outputs:#x}");
             thread::sleep(Duration::from_millis(20));
         }
     }
@@ -157,7 +157,7 @@ fn vise_and_tray_answer_to_outputs_and_a_person() {
     station.enter("tray UNIT_1 4 LINKBAR1_BH");
     let begun = Instant::now();
     while client.read(4) & TRAY == 0 {
-        assert!(begun.elapsed() < PATIENCE);
+        assert!(begun.elapsed() < TIME_LIMIT);
         thread::sleep(Duration::from_millis(20));
     }
     station.enter("tray UNIT_1 9 LINKBAR1_BH");
@@ -192,7 +192,7 @@ fn delayed_inputs_arrive_after_the_delay() {
     let started = Instant::now();
     let mut client = Client::connect(station.fixture);
     while client.read(3) & OPENED == 0 {
-        assert!(started.elapsed() < PATIENCE);
+        assert!(started.elapsed() < TIME_LIMIT);
         thread::sleep(Duration::from_millis(10));
     }
     // The first image is as old as the first step, which is before the station was ready.

@@ -18,7 +18,7 @@ use record::{
 use crate::rcs_console::picture::Picture;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Doing {
+pub struct ProcessState {
     pub tick: u64,   // the first one of the state
     pub number: u32, // of its command; 0 for T3 Interface, which gets a new one in every tick
     /// The row that decided last.
@@ -44,7 +44,7 @@ pub struct Restart {
 }
 
 pub struct Story {
-    doings: [Vec<Doing>; PROCESS_COUNT],
+    doings: [Vec<ProcessState>; PROCESS_COUNT],
     troubles: Vec<Trouble>,
     restarts: Vec<Restart>,
     lines: Vec<LogLine>,
@@ -83,7 +83,7 @@ impl Story {
         for process in ProcessId::ALL.iter().copied() {
             let doing = doing(process, now);
             let known = &mut self.doings[process.position()];
-            if known.last().is_none_or(|last| Doing { tick: last.tick, ..doing } != *last) {
+            if known.last().is_none_or(|last| ProcessState { tick: last.tick, ..doing } != *last) {
                 keep(known, doing, self.limit);
             }
         }
@@ -137,22 +137,22 @@ impl Story {
 
     /// State of a process in a tick, with its first tick.
     #[must_use]
-    pub fn doing(&self, process: ProcessId, tick: u64) -> Option<&Doing> {
+    pub fn doing(&self, process: ProcessId, tick: u64) -> Option<&ProcessState> {
         self.doings(process, tick).last()
     }
 
     /// States of a process up to a tick, oldest first.
     #[must_use]
-    pub fn doings(&self, process: ProcessId, tick: u64) -> &[Doing] {
+    pub fn doings(&self, process: ProcessId, tick: u64) -> &[ProcessState] {
         until(&self.doings[process.position()], tick, |doing| doing.tick)
     }
 
     /// The rows that decided in a process up to a tick, oldest first. Changes of its reports alone are left out.
     #[must_use]
-    pub fn rows(&self, process: ProcessId, tick: u64) -> Vec<Doing> {
-        let mut rows: Vec<Doing> = Vec::new();
+    pub fn rows(&self, process: ProcessId, tick: u64) -> Vec<ProcessState> {
+        let mut rows: Vec<ProcessState> = Vec::new();
         for doing in self.doings(process, tick) {
-            let key = |doing: &Doing| (doing.decided, doing.step, doing.number);
+            let key = |doing: &ProcessState| (doing.decided, doing.step, doing.number);
             if rows.last().is_none_or(|last| key(last) != key(doing)) {
                 rows.push(*doing);
             }
@@ -173,7 +173,7 @@ impl Story {
         let failed = ProcessId::ALL.iter().flat_map(|process| {
             self.doings[process.position()]
                 .windows(2)
-                .filter_map(|pair| <&[Doing; 2]>::try_from(pair).ok())
+                .filter_map(|pair| <&[ProcessState; 2]>::try_from(pair).ok())
                 .filter(|[was, is]| !is.fault.is_none() && was.fault != is.fault)
                 .map(|[_, is]| (is.tick, *process))
         });
@@ -261,10 +261,10 @@ pub fn process_named(name: &str) -> Option<ProcessId> {
     named.map(|(_, process)| *process)
 }
 
-fn doing(process: ProcessId, picture: &Picture) -> Doing {
+fn doing(process: ProcessId, picture: &Picture) -> ProcessState {
     let (header, said) = (picture.memory.header(process), picture.memory.said(process));
     let number = if process == ProcessId::T3i { 0 } else { picture.command_number(process) };
-    Doing {
+    ProcessState {
         tick: picture.tick.0,
         number,
         decided: header.decided,

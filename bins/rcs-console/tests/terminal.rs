@@ -28,7 +28,7 @@ use rustix::{
 const LINES: NonZero<u16> = NonZero::new(24).unwrap();
 const COLUMNS: NonZero<u16> = NonZero::new(80).unwrap();
 const TO_SAFE: &str = "== MOVE -- 0 -- 0 0 SAFE 0 -- 0\n";
-const PATIENCE: Duration = Duration::from_secs(60); // of each action, for a busy machine
+const TIME_LIMIT: Duration = Duration::from_secs(60); // of each action, for a busy machine
 
 struct Silent;
 
@@ -118,7 +118,7 @@ impl Terminal {
     fn wait_while(&self, waits: impl Fn(&str) -> bool, failed: &str) {
         let begun = Instant::now();
         while waits(&self.screen()) {
-            assert!(begun.elapsed() < PATIENCE, "{failed}:\n{}", self.screen());
+            assert!(begun.elapsed() < TIME_LIMIT, "{failed}:\n{}", self.screen());
             thread::sleep(Duration::from_millis(20));
         }
     }
@@ -133,7 +133,7 @@ impl Terminal {
             if let Some(status) = self.child.try_wait().unwrap() {
                 break status;
             }
-            assert!(begun.elapsed() < PATIENCE, "the console does not end:\n{}", self.screen());
+            assert!(begun.elapsed() < TIME_LIMIT, "the console does not end:\n{}", self.screen());
             thread::sleep(Duration::from_millis(20));
         };
         let after = tcgetattr(&self.slave).unwrap();
@@ -151,7 +151,7 @@ impl Terminal {
             !parser.screen().alternate_screen() && !parser.screen().hide_cursor()
         };
         while !is_back() {
-            assert!(begun.elapsed() < PATIENCE, "the screen is not what it was");
+            assert!(begun.elapsed() < TIME_LIMIT, "the screen is not what it was");
             thread::sleep(Duration::from_millis(20));
         }
         status
@@ -216,7 +216,7 @@ fn begin(config: RunConfig) -> Running {
     let listed = || is_alive() && executive::memory::starting(&name).is_none();
     let listens = || UnixStream::connect(executive::memory::operator_socket(&name)).is_ok();
     while !(listed() && listens()) {
-        assert!(begun.elapsed() < PATIENCE, "the run does not begin");
+        assert!(begun.elapsed() < TIME_LIMIT, "the run does not begin");
         thread::sleep(Duration::from_millis(50));
     }
     (run, stop)
@@ -323,7 +323,7 @@ fn operator_jogs_recovers_from_an_emergency_stop_and_finishes() {
     ] {
         let begun = Instant::now();
         while !console.screen().contains(stage) {
-            assert!(begun.elapsed() < PATIENCE, "{request} has not led to {stage}:\n{}", console.screen());
+            assert!(begun.elapsed() < TIME_LIMIT, "{request} has not led to {stage}:\n{}", console.screen());
             console.press(&format!(":{request}\r"));
             thread::sleep(Duration::from_millis(300));
         }
@@ -461,7 +461,7 @@ fn console_waits_for_a_run_with_missing_boards() {
     let run = thread::spawn(move || Run::new(config, Box::new(Silent)).is_err());
     let begun = Instant::now();
     while executive::boards::coming_up(&name.parse().unwrap()).is_none() {
-        assert!(begun.elapsed() < PATIENCE, "the run does not wait for its boards");
+        assert!(begun.elapsed() < TIME_LIMIT, "the run does not wait for its boards");
         thread::sleep(Duration::from_millis(20));
     }
     let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);
@@ -509,7 +509,7 @@ fn suspended_console_continues() {
     console.press("\x1a");
     let begun = Instant::now();
     while !is_stopped() {
-        assert!(begun.elapsed() < PATIENCE, "the console continues:\n{}", console.screen());
+        assert!(begun.elapsed() < TIME_LIMIT, "the console continues:\n{}", console.screen());
         thread::sleep(Duration::from_millis(20));
     }
     console.wait_while(|screen| screen.contains("Looking for runs"), "the screen is not what it was");
@@ -544,7 +544,7 @@ fn closed_terminal_ends_the_console_at_once() {
     }
     drop(screen);
     let begun = Instant::now();
-    while child.try_wait().unwrap().is_none() && begun.elapsed() < PATIENCE {
+    while child.try_wait().unwrap().is_none() && begun.elapsed() < TIME_LIMIT {
         thread::sleep(Duration::from_millis(20));
     }
     let _ = child.kill();

@@ -57,7 +57,7 @@ pub fn serve(arguments: &Arguments) -> Result<ExitCode, Error> {
     let options = Options { origins, info, notices: Some(sender), ..Options::default() };
     let feed = Feed::default();
     let mut tap = feed.tap();
-    log.tell_channels(&mut *tap);
+    log.send_channels(&mut *tap);
     let server = Server::start(port, options, feed.clone()).map_err(unreachable)?;
     stderr_line!(
         "rcs-log: viewers can connect at ws://{}; the log plays when a viewer has subscribed",

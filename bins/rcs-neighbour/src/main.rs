@@ -102,10 +102,10 @@ const LONGEST: Duration = Duration::from_secs(2);
 /// After a connection that lasted at least this long, the next attempt follows without a pause.
 const GOOD: Duration = Duration::from_secs(1);
 /// Time within which the controller detects a closed connection.
-const NOTICED: Duration = Duration::from_secs(5);
+const CLOSE_DETECTION: Duration = Duration::from_secs(5);
 
 /// Waiting for a controller is announced after this time.
-const UNNOTICED: Duration = Duration::from_secs(2);
+const ANNOUNCE_AFTER: Duration = Duration::from_secs(2);
 
 /// Pauses between attempts to connect, which grow while connections are short.
 struct Reconnect {
@@ -139,7 +139,7 @@ fn connect_again(
 ) -> Result<Option<Peer>, Error> {
     let occupied = AttachError::Occupied(role).to_string();
     let started = Instant::now();
-    while started.elapsed() < NOTICED {
+    while started.elapsed() < CLOSE_DETECTION {
         reconnect.wait();
         match connect(arguments, role) {
             Err(Error::Peer(PeerError::Disconnected(why))) if why == occupied => {}
@@ -153,7 +153,7 @@ fn connect_again(
 fn connect(arguments: &ControllerArguments, role: Role) -> Result<Peer, Error> {
     let wait = Duration::from_secs(arguments.wait);
     let address = &arguments.network;
-    let soon = wait.min(UNNOTICED);
+    let soon = wait.min(ANNOUNCE_AFTER);
     match Peer::connect_within(soon, address, role) {
         Err(error) if error.is_passing() && soon < wait => {
             os_io::stderr_line!(

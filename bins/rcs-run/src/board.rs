@@ -10,7 +10,7 @@ use executive::{
         Member,
         member::{MemberEnd, end_with_parent},
     },
-    memory::{OnStuck, SET_UP_LIMIT, within_limit},
+    memory::{OnTimeout, SET_UP_LIMIT, within_limit},
     realtime::{self, Verdict},
 };
 use os_io::stderr_line;
@@ -45,7 +45,7 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
     let mut files = BoardFiles::new(&arguments.run, store, job.reloads)
         .map_err(|source| Error::Start(StartError::Thread(source)))?;
     let join = || Member::join(&arguments.run, arguments.board, fingerprint);
-    let mut member = within_limit(SET_UP_LIMIT, Some(stuck as OnStuck), join)?;
+    let mut member = within_limit(SET_UP_LIMIT, Some(stuck as OnTimeout), join)?;
     let name = arguments.board;
     let real_time = member.is_real_time().then(|| realtime::acquire(arguments.cpu));
     let verdict = real_time.as_ref().map(|granted| &granted.verdict);

@@ -18,8 +18,8 @@ use std::{
 
 use crate::pages::DataArgument;
 use diagnostics::{
-    Diagnostic, Diagnostics, FAULTS, FIELDS, Finding, Group, JOBS, Problems, ROBOTS, Severity, Source,
-    Suspects, grouped,
+    DataGroup, Diagnostic, Diagnostics, FAULTS, FIELDS, Finding, Group, JOBS, Problems, ROBOTS, Severity,
+    Source, grouped,
 };
 use executive::egm::{RobotFile, placement::PlacementError};
 use os_io::{
@@ -199,7 +199,7 @@ impl Checked {
             }
         }
         if let [_, jobs @ ..] = reports.as_mut_slice() {
-            Diagnostics::tell_once(&mut jobs.iter_mut().map(|(_, report)| report).collect::<Vec<_>>());
+            Diagnostics::merge_repeated(&mut jobs.iter_mut().map(|(_, report)| report).collect::<Vec<_>>());
         }
         reports.push(("cell description".to_owned(), of_cell));
         if let Some((cell, _)) = &cell {
@@ -216,7 +216,7 @@ impl Checked {
 
     /// The findings, grouped by the datum that is probably wrong, with the worst datum first.
     fn by_datum(&self) -> Vec<OfDatum> {
-        let suspects: Vec<Suspects> = self.findings().into_iter().map(Diagnostic::suspects).collect();
+        let suspects: Vec<DataGroup> = self.findings().into_iter().map(Diagnostic::suspects).collect();
         let of_datum = |Group { datum, findings, errors }| OfDatum {
             datum,
             findings: findings.len(),

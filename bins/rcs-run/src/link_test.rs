@@ -23,7 +23,7 @@ use rcs_core::tick::TICK_MS;
 use runtime::RobotKind;
 
 use self::{
-    dump::{Dump, Way},
+    dump::{Dump, FrameDirection},
     tally::{Observed, Tally, Verdict},
 };
 use crate::rcs_run::{
@@ -123,7 +123,7 @@ impl Test {
             }
             let now = Instant::now();
             let fresh = rx.as_slice().get(before..).unwrap_or_default();
-            self.dump.show(now, Way::Received, fresh);
+            self.dump.show(now, FrameDirection::Received, fresh);
             if let Some(outstanding) = &mut self.outstanding
                 && !fresh.is_empty()
             {
@@ -163,7 +163,7 @@ impl Test {
         }
         let now = Instant::now();
         self.line.send(&tx);
-        self.dump.show(now, Way::Sent, tx.as_slice());
+        self.dump.show(now, FrameDirection::Sent, tx.as_slice());
         if tx.as_slice().len() == FRAME_BYTES {
             self.outstanding = Some(Outstanding { sent: now, answered: None });
         }

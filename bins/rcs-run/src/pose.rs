@@ -10,7 +10,7 @@ use std::{
 };
 
 use diagnostics::alternatives;
-use executive::memory::{Attached, OnStuck, SET_UP_LIMIT, within_limit};
+use executive::memory::{Attached, OnTimeout, SET_UP_LIMIT, within_limit};
 use geometry::{
     frame::{Frame, Vector, rotation_from_x_y},
     pose::Pose,
@@ -87,7 +87,7 @@ fn asked(arguments: &PoseArguments, store: &Store) -> Result<Pose, Error> {
         return named(name, store).map(|record| record.pose);
     }
     let run = arguments.run.clone().map_or_else(only_run, Ok)?;
-    let attached = within_limit(SET_UP_LIMIT, Some(stuck as OnStuck), || Attached::open(&run))?;
+    let attached = within_limit(SET_UP_LIMIT, Some(stuck as OnTimeout), || Attached::open(&run))?;
     let memory = settled(&attached)?;
     let recorded = memory.prim.status.recorded_pose.and_then(|number| memory.changing_pose(number).copied());
     recorded.ok_or_else(|| {

@@ -43,11 +43,11 @@ struct JobReach {
     margin_deg: f64,
     wrist_deg: f64,     // smallest angle of the wrist from the straight position, degrees
     speeds_deg_s: Axes, // greatest speed of each axis, degrees/s
-    trouble: Option<Trouble>,
+    trouble: Option<RouteProblem>,
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct Trouble {
+struct RouteProblem {
     line: u32,
     way: String,
     at_mm: [f64; 3], // position of the tool in the work object, mm
@@ -185,7 +185,7 @@ impl Bench<'_> {
 struct Follower {
     track: Track,
     ways: usize,
-    trouble: Option<Trouble>,
+    trouble: Option<RouteProblem>,
 }
 
 impl Follower {
@@ -200,7 +200,7 @@ impl Follower {
         }
         if let Err(hindrance) = self.track.go(arm, tool, TICK_S) {
             let (line, way) = place();
-            self.trouble = Some(Trouble { line, way, at_mm: tool.position, why: hindrance.to_string() });
+            self.trouble = Some(RouteProblem { line, way, at_mm: tool.position, why: hindrance.to_string() });
         }
     }
 
@@ -243,7 +243,7 @@ impl fmt::Display for Reach {
                     "{:>4} ways; axis {} comes within {:.1} degrees of its limit, the wrist within {:.1} of straight",
                     job.ways, job.axis, job.margin_deg, job.wrist_deg
                 ),
-                Some(Trouble { line, way, at_mm: [x, y, z], why }) => writeln!(
+                Some(RouteProblem { line, way, at_mm: [x, y, z], why }) => writeln!(
                     f,
                     "{:>4} ways, then ERROR line {line}: {way}: {why} at ({x:.0}, {y:.0}, {z:.0}) mm",
                     job.ways

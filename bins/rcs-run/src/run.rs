@@ -4,7 +4,7 @@ use std::{env, io, process::ExitCode, sync::Arc};
 
 use clap::CommandFactory as _;
 use diagnostics::{JOBS, UnknownFile, nearest};
-use executive::memory::{OnStuck, RunName};
+use executive::memory::{OnTimeout, RunName};
 use os_io::{carried::is_carried, stderr_line};
 use runtime::{
     ClockKind, Ending, Observer, Run, RunConfig, RunOutcome, StartError,
@@ -28,7 +28,7 @@ const CONSOLE: &str = "console"; // name of a run with a console, followed by th
 /// Run a job and print its result. Fails if the run could not begin. A failed job is not an error but an exit status.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let stop = interruption()?;
-    let on_stuck = Some(memory_fault::stuck as OnStuck);
+    let on_stuck = Some(memory_fault::stuck as OnTimeout);
     let console = arguments.console.then(Console::program).transpose()?;
     let name = arguments.run.clone().or_else(|| console.as_ref().map(|_| RunName::unique(CONSOLE)));
     let program = env::current_exe()?;

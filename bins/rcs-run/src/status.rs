@@ -4,7 +4,7 @@ use std::{fmt, process::ExitCode};
 
 use executive::{
     boards,
-    memory::{self, Attached, OnStuck, RunName, SET_UP_LIMIT, SharedMemoryError, mirror, within_limit},
+    memory::{self, Attached, OnTimeout, RunName, SET_UP_LIMIT, SharedMemoryError, mirror, within_limit},
     status::Status,
 };
 
@@ -23,7 +23,7 @@ pub fn status(arguments: &StatusArguments) -> Result<ExitCode, Error> {
         answer(&Starting::of(&name, phase), arguments.json)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let run = within_limit(SET_UP_LIMIT, Some(stuck as OnStuck), || Attached::open(&name))?;
+    let run = within_limit(SET_UP_LIMIT, Some(stuck as OnTimeout), || Attached::open(&name))?;
     if arguments.directory {
         console::answer(&format!("{}\n", mirror::directory(&name).display()))?;
         return Ok(ExitCode::SUCCESS);

@@ -30,8 +30,8 @@ use rcs_core::{
 
 use self::without_current::{Power, fall_back};
 pub use self::{
-    desk::Desk,
-    event::{FieldEvent, Happened},
+    desk::FieldController,
+    event::{FieldChange, FieldEvent},
     hold::FoundOutputs,
 };
 use crate::devices;
@@ -56,19 +56,19 @@ pub enum FieldError {
 #[derive(Clone, Debug)]
 pub enum Field {
     Simulated(SimulatedField), // emulated couplers, in simulated time
-    External(Desk),            // couplers outside of the loop, whose owner passes orders and reports on
+    External(FieldController), // couplers outside of the loop, whose owner passes orders and reports on
 }
 
 impl Field {
     #[must_use]
-    pub const fn desk(&self) -> &Desk {
+    pub const fn desk(&self) -> &FieldController {
         match self {
             Self::Simulated(field) => field.desk(),
             Self::External(desk) => desk,
         }
     }
 
-    pub const fn desk_mut(&mut self) -> &mut Desk {
+    pub const fn desk_mut(&mut self) -> &mut FieldController {
         match self {
             Self::Simulated(field) => field.desk_mut(),
             Self::External(desk) => desk,
@@ -84,7 +84,7 @@ struct Cut {
 
 #[derive(Clone, Debug)]
 pub struct SimulatedField {
-    desk: Desk,
+    desk: FieldController,
     simulated: Vec<Simulated>,
     power: Vec<Power>, // of the valves of each device
     /// Cuts of the connection of each device: by a fault of the cell, and by [`cut`](Self::cut).
@@ -106,7 +106,7 @@ impl SimulatedField {
         let sensed = mapping.inputs.iter().map(|point| i64::from(point.name == SAFETY)).collect();
         let cuts = vec![Cut::default(); mapping.devices.len()];
         let power = vec![Power::default(); mapping.devices.len()];
-        let desk = Desk::new(mapping);
+        let desk = FieldController::new(mapping);
         let mut field = Self { desk, simulated, power, cuts, now: 0, devices: None, arrived, sensed };
         field.sense(inputs);
         for tick in 0..SET_UP_MS / TICK_MS {
@@ -158,11 +158,11 @@ impl SimulatedField {
     }
 
     #[must_use]
-    pub const fn desk(&self) -> &Desk {
+    pub const fn desk(&self) -> &FieldController {
         &self.desk
     }
 
-    pub const fn desk_mut(&mut self) -> &mut Desk {
+    pub const fn desk_mut(&mut self) -> &mut FieldController {
         &mut self.desk
     }
 

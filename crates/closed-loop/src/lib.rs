@@ -77,7 +77,7 @@ pub struct ClosedLoop<L = Present, W: World = SimulatedWorkstation> {
     pub workstation: W, // the cell and the other equipment of the workstation
 }
 
-pub struct Desk<'a, W = SimulatedWorkstation> {
+pub struct StepContext<'a, W = SimulatedWorkstation> {
     pub tick: Tick,
     pub memory: &'a CommonMemory,
     pub inputs: &'a DeviceInputs,
@@ -192,7 +192,7 @@ impl<L, W: World> ClosedLoop<L, W> {
 
     /// Third part of a tick: Data System and command source read the outputs of the tick. The source is `command`: it
     /// reads its status from the gate and lets the gate read its command. The next tick uses the results.
-    pub fn exchange<T>(&mut self, command: impl FnOnce(Desk<'_, W>) -> T) -> T {
+    pub fn exchange<T>(&mut self, command: impl FnOnce(StepContext<'_, W>) -> T) -> T {
         let (tick, memory) = (self.course.tick(), self.course.memory());
         if let Some(books) = &mut self.books {
             books.step(tick, &memory.task.data_base);
@@ -205,8 +205,8 @@ impl<L, W: World> ClosedLoop<L, W> {
     }
 
     /// View of a command source, or an operator, between two ticks.
-    pub const fn desk(&mut self) -> Desk<'_, W> {
-        Desk {
+    pub const fn desk(&mut self) -> StepContext<'_, W> {
+        StepContext {
             tick: self.course.tick(),
             memory: self.course.memory(),
             inputs: &self.inputs,

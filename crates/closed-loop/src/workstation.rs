@@ -4,7 +4,7 @@ use field::Failure;
 use interfaces::station::{Key, ViseOpening};
 use neighbours::workstation::player::Workstation;
 use plant::{
-    Cell, CellDescription, CellEvent, Droop, Placement, WorkstationAction, WorkstationError, t3::Stage,
+    Cell, CellDescription, CellEvent, Placement, SagReport, WorkstationAction, WorkstationError, t3::Stage,
 };
 use rcs_core::tick::{TICK_MS, Tick};
 use taskdata::load::job::{Drum, Offset, Workstation as Action};
@@ -25,7 +25,7 @@ const SAFETY_OPEN: &str = "the safety circuit is open: safety.ok is 0";
 #[derive(Clone, Debug)]
 pub struct Emergency {
     pub tick: Tick,
-    pub droop: Droop, // cause, position, and the state of the arm
+    pub droop: SagReport, // cause, position, and the state of the arm
 }
 
 #[derive(Clone)]

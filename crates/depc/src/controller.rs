@@ -523,12 +523,12 @@ mod tests {
         assert_eq!((out.tx.length, out.dtr, controller.state()), (16, true, ControllerState::Running));
     }
 
-    struct Complaining {
+    struct RefusingArm {
         complaint: Option<Warning>,
         stopped: u32,
     }
 
-    impl Robot for Complaining {
+    impl Robot for RefusingArm {
         fn present(&mut self) -> Plate {
             HOME
         }
@@ -549,7 +549,7 @@ mod tests {
     #[test]
     fn own_warning_of_the_robot_is_shown_until_the_host_restarts() {
         let (mut controller, mut robot) =
-            (Controller::new(Limits::NBS), Complaining { complaint: None, stopped: 0 });
+            (Controller::new(Limits::NBS), RefusingArm { complaint: None, stopped: 0 });
         controller.step(&ControllerInputs { start: true, ..well() }, &mut robot);
         assert_eq!((controller.state(), robot.stopped), (ControllerState::Running, 0));
         robot.complaint = Some(Warning::OffPath);

@@ -18,7 +18,7 @@ use session::{Session, Truth};
 
 const SCHEDULES: u64 = 10_000; // in an ordinary run
 const FAULTY_TICKS: u64 = 120; // with faults
-const MENDED_TICKS: u32 = 300; // two answers of the operator, a stalled line, and the motion to the goal
+const RECOVERY_TICKS: u32 = 300; // two answers of the operator, a stalled line, and the motion to the goal
 
 fn rule(numbers: &mut Numbers) -> Rule {
     let kinds = u32::try_from(FaultKind::ALL.len()).unwrap();
@@ -130,7 +130,7 @@ fn run(seed: u64, sum: &mut Sum) {
         session.tick();
     }
     session.new_goal();
-    session.until_reached(MENDED_TICKS);
+    session.until_reached(RECOVERY_TICKS);
     let truth = session.truth;
     assert!(truth.deceptions() > 0 || truth.velocity_warnings == 0, "{truth:?}");
     sum.add(&session, refused);

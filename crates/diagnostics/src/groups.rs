@@ -17,7 +17,7 @@ pub struct Group {
 
 /// The data that a finding names, one of which is probably wrong, and whether it is an error.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Suspects {
+pub struct DataGroup {
     /// Names of the data; not empty.
     pub data: Vec<String>,
     /// True for an error, false for a warning.
@@ -26,7 +26,7 @@ pub struct Suspects {
 
 /// Groups findings. The datum that most findings name gets all of these, then the next datum. The worst group is first.
 #[must_use]
-pub fn grouped(suspects: &[Suspects]) -> Vec<Group> {
+pub fn grouped(suspects: &[DataGroup]) -> Vec<Group> {
     let mut left: Vec<usize> = (0..suspects.len()).collect();
     let mut groups = Vec::new();
     while !left.is_empty() {
@@ -57,9 +57,9 @@ pub fn grouped(suspects: &[Suspects]) -> Vec<Group> {
 impl Diagnostic {
     /// The data that the finding is about, one of which is probably wrong; never empty.
     #[must_use]
-    pub fn suspects(&self) -> Suspects {
+    pub fn suspects(&self) -> DataGroup {
         let data = if self.problem.data.is_empty() { vec![self.named()] } else { self.problem.data.clone() };
-        Suspects { data, error: self.severity() == Severity::Error }
+        DataGroup { data, error: self.severity() == Severity::Error }
     }
 
     /// The entry of a TOML file, the name in the underlined text or after it, or else the place.
@@ -84,8 +84,8 @@ impl Diagnostic {
 mod tests {
     use super::*;
 
-    fn suspects(data: &[&str], error: bool) -> Suspects {
-        Suspects { data: data.iter().map(|name| (*name).to_owned()).collect(), error }
+    fn suspects(data: &[&str], error: bool) -> DataGroup {
+        DataGroup { data: data.iter().map(|name| (*name).to_owned()).collect(), error }
     }
 
     #[test]

@@ -21,7 +21,7 @@ pub mod toml;
 
 pub use diagnostic::Diagnostic;
 pub use finding::Finding;
-pub use groups::{Group, Suspects, grouped};
+pub use groups::{DataGroup, Group, grouped};
 pub use named_files::{FAULTS, FIELDS, JOBS, NamedFiles, ROBOTS, UnknownFile};
 pub use names::{alternatives, distance, nearest};
 pub use places::{Places, Position};

@@ -21,7 +21,7 @@ impl Diagnostic {
 
 impl Diagnostics {
     /// Keep only the first of equal findings in several reports. Its help lists the lines of the others.
-    pub fn tell_once(reports: &mut [&mut Self]) {
+    pub fn merge_repeated(reports: &mut [&mut Self]) {
         let mut lines: HashMap<_, Vec<String>> = HashMap::new();
         for diagnostic in reports.iter().flat_map(|report| &report.diagnostics) {
             lines.entry(diagnostic.key()).or_default().extend(diagnostic.line_in_words());
@@ -71,7 +71,7 @@ mod tests {
             &[(3, "deeper", Some("way")), (4, "alone", None), (5, "other", None), (6, "other", None)],
         );
         let mut third = report("three", &[(1, "other", None), (2, "other", None)]);
-        Diagnostics::tell_once(&mut [&mut first, &mut second, &mut third]);
+        Diagnostics::merge_repeated(&mut [&mut first, &mut second, &mut third]);
         let said = |report: &Diagnostics| {
             let all = report.diagnostics().iter();
             all.map(|one| (one.message().to_owned(), one.help().unwrap_or_default().to_owned()))

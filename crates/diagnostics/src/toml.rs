@@ -59,9 +59,9 @@ pub struct Document<'a> {
 
 /// Paths of the entries that have stand-ins.
 #[derive(Clone, Debug, Default)]
-pub struct StandIns(BTreeSet<Path>);
+pub struct Defaulted(BTreeSet<Path>);
 
-impl StandIns {
+impl Defaulted {
     /// True if neither the value at a path, nor a part of it, nor an entry around it has a stand-in.
     #[must_use]
     pub fn trusts(&self, path: &str) -> bool {
@@ -84,7 +84,7 @@ pub struct Reading<T> {
     /// The problems found.
     pub problems: Problems,
     /// The entries that have stand-ins.
-    pub stand_ins: StandIns,
+    pub stand_ins: Defaulted,
 }
 
 impl<'a> Document<'a> {
@@ -105,7 +105,7 @@ impl<'a> Document<'a> {
     pub fn load<T: DeserializeOwned>(
         source: &Source,
         kind: FileKind,
-        check: impl FnOnce(&T, &StandIns, &mut Problems),
+        check: impl FnOnce(&T, &Defaulted, &mut Problems),
     ) -> Result<T, Diagnostics> {
         let (document, mut problems) = Document::parse(source, kind);
         // After a syntax error the tables are not reliable.
@@ -175,7 +175,7 @@ impl<'a> Document<'a> {
                 path: String::new(),
             });
             let Notes { problems, stand_ins, .. } = notes;
-            let (problems, stand_ins) = (problems.into_inner(), StandIns(stand_ins.into_inner()));
+            let (problems, stand_ins) = (problems.into_inner(), Defaulted(stand_ins.into_inner()));
             match result {
                 Err(Stop::Missing(path)) if !missing.contains(&path) => {
                     missing.insert(path);

@@ -238,7 +238,9 @@ impl Host {
         let (mut pose, mut speed) = self.path.target(now);
         if moving && self.path.motion() != Motion::Moving {
             self.interrupt();
-        } else if moving && now.saturating_sub(sent.at) > self.settings.gap && !self.has_kept_up(&sent, &pose)
+        } else if moving
+            && now.saturating_sub(sent.at) > self.settings.gap
+            && !self.can_reach_target(&sent, &pose)
         {
             self.stop(now);
             (pose, speed) = self.path.target(now);
@@ -258,7 +260,7 @@ impl Host {
 
     /// True if the robot has kept up during a gap, in which it continues with its last speed reference. Its distance
     /// from the next target may exceed its earlier lag by what the limits allow in the longest permitted gap.
-    fn has_kept_up(&self, sent: &Sent, target: &Pose) -> bool {
+    fn can_reach_target(&self, sent: &Sent, target: &Pose) -> bool {
         let (way, turn) = target.distance(&self.feedback);
         let (Limits { speed, turn: rate, .. }, gap) = (self.settings.limits, seconds(self.settings.gap));
         way <= sent.lag.0 + speed * gap && turn <= sent.lag.1 + rate * gap

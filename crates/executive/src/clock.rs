@@ -34,7 +34,7 @@ pub trait Time {
     fn sleep_until(&mut self, at: Duration);
 
     /// Return as soon as [`now`](Self::now) is at least `at`, without yielding the processor.
-    fn stay_awake_until(&mut self, at: Duration) {
+    fn spin_until(&mut self, at: Duration) {
         while self.now() < at {
             std::hint::spin_loop();
         }
@@ -97,7 +97,7 @@ impl<T: Time> Grid<T> {
     pub fn wait(&mut self) -> u64 {
         let begins = if let Some(next) = self.ready_for.take() {
             let begins = self.begin(next);
-            self.time.stay_awake_until(begins);
+            self.time.spin_until(begins);
             begins
         } else {
             let next = self.slot_now() + 1;
@@ -238,7 +238,7 @@ mod tests {
             }
         }
 
-        fn stay_awake_until(&mut self, at: Duration) {
+        fn spin_until(&mut self, at: Duration) {
             self.now = self.now.max(at);
         }
     }

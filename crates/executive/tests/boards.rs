@@ -35,7 +35,7 @@ static ALLOCATOR: Counting = Counting;
 /// Allocations are counted for the whole process: one test at a time.
 static ALONE: Mutex<()> = Mutex::new(());
 
-const PATIENCE: Duration = Duration::from_secs(30);
+const TIME_LIMIT: Duration = Duration::from_secs(30);
 const FINGERPRINT: Fingerprint = Fingerprint { program: 1, data: 2, job: 3 };
 const CARD: RunCard = RunCard { fingerprint: FINGERPRINT, real_time: false, start: Tick::BEFORE_START };
 
@@ -129,7 +129,7 @@ fn four_boards_compute_the_bits_of_one_and_allocate_nothing() {
         let mut coordinator = Coordinator::create(&name, &CARD).expect("this machine has shared memory");
         let boards: Vec<_> = Board::ALL.iter().map(|&b| board(scope, &name, b, &stop)).collect();
         let mut arrivals = 0;
-        coordinator.gather(PATIENCE, &stop, |_, _| arrivals += 1).expect("all come");
+        coordinator.gather(TIME_LIMIT, &stop, |_, _| arrivals += 1).expect("all come");
         assert_eq!(arrivals, 4);
         let Played { course: split, runner, error } = play(coordinator, TICKS, |_| ());
         assert_eq!(error, None);
@@ -165,7 +165,7 @@ fn a_board_that_leaves_stops_the_pulse_and_is_named() {
         for &b in Board::ALL {
             board(scope, &name, b, if b == Board::Eight { &leave } else { &stop });
         }
-        coordinator.gather(PATIENCE, &stop, |_, _| ()).expect("all come");
+        coordinator.gather(TIME_LIMIT, &stop, |_, _| ()).expect("all come");
         let Played { course, error: lost, .. } =
             play(coordinator, 500, |tick| leave.store(tick == Tick(400), Ordering::Relaxed));
         let lost: Lost = lost.expect("a board left");
@@ -190,7 +190,7 @@ fn missing_boards_are_named() {
             board(scope, &name, b, &stop);
         }
         let mut absent = Vec::new();
-        let error = coordinator.gather(PATIENCE, &stop, |event, missing| {
+        let error = coordinator.gather(TIME_LIMIT, &stop, |event, missing| {
             assert!(matches!(event, BoardEvent::Came { .. }), "{event:?}");
             absent = missing.to_vec();
             stop.store(missing == [Board::Six], Ordering::Relaxed);
@@ -246,7 +246,7 @@ fn a_replaced_board_behaves_like_restarted_processes() {
         for &b in Board::ALL {
             board(scope, &name, b, if b == Board::Two { &leave } else { &stop });
         }
-        coordinator.gather(PATIENCE, &stop, |_, _| ()).expect("all come");
+        coordinator.gather(TIME_LIMIT, &stop, |_, _| ()).expect("all come");
         let mut course = Course::new(coordinator);
         let data = store().view();
         let mut restarted = None;
@@ -256,7 +256,7 @@ fn a_replaced_board_behaves_like_restarted_processes() {
                 assert_eq!((lost.board, lost.tick, restarted), (Board::Two, tick, None), "{lost}");
                 restarted = Some(tick);
                 board(scope, &name, Board::Two, &stop);
-                course.levels_mut().await_successor(&lost, PATIENCE, &stop, |_, _| ()).expect("one comes");
+                course.levels_mut().await_successor(&lost, TIME_LIMIT, &stop, |_, _| ()).expect("one comes");
             }
         }
         let restarted = restarted.expect("a board left");

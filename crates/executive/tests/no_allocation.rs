@@ -55,9 +55,9 @@ impl Levels<()> for Failing {
     }
 }
 
-struct Careless;
+struct AllocatingProcess;
 
-impl Levels<()> for Careless {
+impl Levels<()> for AllocatingProcess {
     type Error = Infallible;
 
     fn step(
@@ -113,7 +113,7 @@ fn allocation_in_a_tick_is_detected() {
         times.p50, times.p99, times.max
     );
 
-    let (mut course, mut careless) = (Course::new(Careless), Runner::new(None));
+    let (mut course, mut careless) = (Course::new(AllocatingProcess), Runner::new(None));
     for _ in 0..1_000 {
         let Ok(()) = careless.step(&mut course, &external, &(), 0);
     }

@@ -58,7 +58,7 @@ pub use self::{
     operator::OperatorInputs,
     pedestal::{OutsidePedestal, PedestalOutputs, TableOutputs},
     prim::PrimOutputs,
-    processes::{CommonMemory, Fault, PROCESS_COUNT, ProcessId, Said},
+    processes::{CommonMemory, CommonStatus, Fault, PROCESS_COUNT, ProcessId},
     quick_change::QuickChangeOutputs,
     subtask::SubtaskOutputs,
     t3i::T3iOutputs,

@@ -195,10 +195,10 @@ macro_rules! register {
 
             /// The status of a process.
             #[must_use]
-            pub fn said(&self, process: ProcessId) -> Said {
+            pub fn said(&self, process: ProcessId) -> CommonStatus {
                 match process { $( ProcessId::$id => {
                     let status = &self.$field.status;
-                    Said {
+                    CommonStatus {
                         report: status.report.text(),
                         lower: status.report.lower(),
                         fault: Fault::from(status.$failure),
@@ -287,7 +287,7 @@ answers!(
 
 /// The status of a process, independent of its type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Said {
+pub struct CommonStatus {
     /// The report as text.
     pub report: &'static str,
     /// The report as a state variable of the superior.

@@ -52,7 +52,7 @@ mod code {
 #[must_use]
 pub fn pack(log: &Log, added: &[Attachment]) -> Vec<u8> {
     let mut packer = Packer::default();
-    log.tell_channels(&mut packer);
+    log.send_channels(&mut packer);
     log.play(&mut packer, |_| ());
     let mut out = begin(&log.run, &log.attachments, added);
     packer.write(&mut out);

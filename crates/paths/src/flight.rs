@@ -16,13 +16,13 @@ use plant::{arm::Arm, description::Actuators};
 use rcs_core::tick::TICK_S;
 use taskdata::files::TrajPara;
 
-const FLIES_ON: u32 = 2; // docs/design/motion.md "Flying on"
+const PASSING_TICKS: u32 = 2; // docs/design/motion.md "Flying on"
 const SETTLES: u32 = 3; // docs/design/motion.md "Rest"
 const LONGEST: u32 = 15_000; // ticks: ten minutes
 const LAG: u32 = 100; // ticks until the servos come to rest
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Trouble {
+pub enum MotionError {
     Joints {
         problem: JointProblem,
         /// Index of the joint and degrees beyond its limit; `None` if the point is out of reach.
@@ -36,7 +36,7 @@ pub enum Trouble {
 }
 
 #[derive(Clone, Debug)]
-pub struct Flown {
+pub struct PointMotion {
     pub ticks: u32,     // since the previous point
     pub held_back: u32, // ticks in which the limits of the link slowed the robot
     pub margin: Margin, // of the joint nearest to a limit
@@ -77,11 +77,11 @@ impl Robot {
         look(self.arm.joints());
     }
 
-    fn command(&mut self, point: &Frame, look: &mut impl FnMut(&Joints)) -> Result<u32, Trouble> {
+    fn command(&mut self, point: &Frame, look: &mut impl FnMut(&Joints)) -> Result<u32, MotionError> {
         for ticks in 1..LONGEST {
-            let next = step(&self.position, point, &T3, &LinkLimits::NBS).map_err(|_| Trouble::Words)?;
+            let next = step(&self.position, point, &T3, &LinkLimits::NBS).map_err(|_| MotionError::Words)?;
             let plate = next.position.plate;
-            self.joints = joints_for(&T3, &plate, &self.joints).map_err(|problem| Trouble::Joints {
+            self.joints = joints_for(&T3, &plate, &self.joints).map_err(|problem| MotionError::Joints {
                 problem,
                 joint: beyond(&plate, &self.joints),
                 at: point.position.into(),
@@ -93,7 +93,7 @@ impl Robot {
                 return Ok(ticks);
             }
         }
-        Err(Trouble::Endless)
+        Err(MotionError::Endless)
     }
 
     /// Moves through the points to rest. In each tick `look` gets the index of the point and the joint angles,
@@ -102,20 +102,20 @@ impl Robot {
         &mut self,
         points: &[(Frame, TrajPara)],
         mut look: impl FnMut(usize, &Joints),
-    ) -> (Vec<Flown>, Option<Trouble>) {
+    ) -> (Vec<PointMotion>, Option<MotionError>) {
         let mut flown = Vec::new();
         let mut motion = PrimMotion::at_rest(&self.tool());
         for (number, (goal, parameters)) in points.iter().enumerate() {
             let margin = T3.margin(&self.joints);
-            let mut one = Flown { ticks: 0, held_back: 0, margin };
+            let mut one = PointMotion { ticks: 0, held_back: 0, margin };
             let trouble = (|| {
                 let through = number + 1 < points.len();
                 let brake = through.then(|| f64::from(parameters.brk_dst) / 100.0);
                 let limits = Limits::from_counts(parameters.acc_fac, parameters.vel_max, parameters.smooth)
-                    .ok_or(Trouble::Parameters)?;
+                    .ok_or(MotionError::Parameters)?;
                 motion.go(goal, &limits, brake);
                 let mut passed = 0;
-                while passed < if through { FLIES_ON } else { SETTLES } {
+                while passed < if through { PASSING_TICKS } else { SETTLES } {
                     motion.step(KNOB_FULL);
                     let took = self.command(&motion.frame(), &mut |joints| look(number, joints))?;
                     one.ticks += took;
@@ -126,7 +126,7 @@ impl Robot {
                     }
                     passed += u32::from(if through { motion.is_passing() } else { motion.is_at_rest() });
                     if one.ticks > LONGEST {
-                        return Err(Trouble::Endless);
+                        return Err(MotionError::Endless);
                     }
                 }
                 Ok(())
@@ -166,7 +166,7 @@ pub fn time(start: &Frame, points: &[(Frame, TrajPara)]) -> Vec<u32> {
         let Some(limits) = limits else { break };
         motion.go(goal, &limits, through);
         let (mut ticks, mut passed) = (0, 0);
-        while ticks < LONGEST && passed < if through.is_some() { FLIES_ON } else { SETTLES } {
+        while ticks < LONGEST && passed < if through.is_some() { PASSING_TICKS } else { SETTLES } {
             motion.step(KNOB_FULL);
             ticks += 1;
             let there = if through.is_some() { motion.is_passing() } else { motion.is_at_rest() };

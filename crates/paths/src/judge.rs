@@ -13,8 +13,8 @@ use taskdata::files::{Target, TaskData};
 
 use crate::{
     finding::{Finding, Segment, Walked},
-    flight::Trouble,
-    known::{Asked, Outcome, Points},
+    flight::MotionError,
+    known::{FlightInputs, Outcome, Points},
     plan::{Datum, Leg, Phase},
     state::State,
     steps::Step,
@@ -23,7 +23,7 @@ use crate::{
 pub const LEAST_MARGIN: f64 = 0.5; // degrees; below it, a warning
 
 /// A part in the closed vise slips if the fingers are farther than this from it, in (ASSUMED).
-const BESIDE: f64 = 0.015;
+const SLIP_INCHES: f64 = 0.015;
 
 impl State<'_> {
     /// `commands` are those of E-move and Subtask. Contacts are checked only if `clear`, when all positions are known.
@@ -64,7 +64,7 @@ impl State<'_> {
         let part = self.layout.parts.get(index).filter(|_| self.room.in_vise(&self.layout) == Some(index))?;
         let (_, closed) = self.room.vise_seat(self.layout.program, part)?;
         let beside = tool.inverse().compose(&part.frame).position.y;
-        (self.layout.jaws <= closed && beside.abs() > BESIDE).then(|| Finding {
+        (self.layout.jaws <= closed && beside.abs() > SLIP_INCHES).then(|| Finding {
             code: "path.grip",
             error: true,
             line: 0,
@@ -97,7 +97,7 @@ impl State<'_> {
         clear: bool,
         tries: bool,
     ) -> Arc<Outcome> {
-        let asked = Asked {
+        let asked = FlightInputs {
             robot: self.robot.clone(),
             gripper: self.layout.gripper,
             held: self.layout.held.clone(),
@@ -257,9 +257,9 @@ fn backwards(phase: &Phase, departs: usize) -> (Points, Vec<Ends>) {
     (Points { list, opens: 0 }, names)
 }
 
-pub(crate) fn in_words(trouble: Trouble) -> (String, String, f64) {
+pub(crate) fn in_words(trouble: MotionError) -> (String, String, f64) {
     match trouble {
-        Trouble::Joints { problem, joint, at: [x, y, z] } => {
+        MotionError::Joints { problem, joint, at: [x, y, z] } => {
             let code = Warning::from(problem).text();
             let what = match joint {
                 Some((joint, by)) => {
@@ -278,10 +278,12 @@ pub(crate) fn in_words(trouble: Trouble) -> (String, String, f64) {
             );
             (text, code.to_owned(), joint.map_or(0.0, |(_, by)| by))
         }
-        Trouble::Words => ("the link has no words for a position on it".to_owned(), "words".to_owned(), 0.0),
-        Trouble::Parameters => {
+        MotionError::Words => {
+            ("the link has no words for a position on it".to_owned(), "words".to_owned(), 0.0)
+        }
+        MotionError::Parameters => {
             ("acc-fac, vel-max and smooth-acc must be positive".to_owned(), "parameters".to_owned(), 0.0)
         }
-        Trouble::Endless => ("it takes longer than ten minutes".to_owned(), "time".to_owned(), 0.0),
+        MotionError::Endless => ("it takes longer than ten minutes".to_owned(), "time".to_owned(), 0.0),
     }
 }

@@ -15,7 +15,7 @@ use plant::{
 use taskdata::files::TrajPara;
 
 use crate::{
-    flight::{Flown, Robot, Trouble},
+    flight::{MotionError, PointMotion, Robot},
     survey::{SIGHT, Seen, Survey},
 };
 
@@ -28,7 +28,7 @@ pub(crate) struct Points {
 
 /// All inputs of a flight except the bodies near it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Asked {
+pub(crate) struct FlightInputs {
     pub robot: Robot,
     pub gripper: Option<u8>,
     pub held: Option<Placed>,
@@ -40,7 +40,7 @@ pub(crate) struct Asked {
     pub tries: bool,                    // the check ends at the first contact
 }
 
-impl Asked {
+impl FlightInputs {
     fn number(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         let tool = self.robot.tool().position;
@@ -56,9 +56,9 @@ impl Asked {
 #[derive(Debug)]
 pub(crate) struct Outcome {
     pub robot: Robot,
-    pub flown: Vec<Flown>,
+    pub flown: Vec<PointMotion>,
     pub seen: Vec<Seen>,
-    pub trouble: Option<Trouble>,
+    pub trouble: Option<MotionError>,
 }
 
 impl Outcome {
@@ -67,8 +67,8 @@ impl Outcome {
     }
 }
 
-fn fly(asked: &Asked, room: &Room, layout: &Layout, devices: &[Body]) -> (Outcome, Swept) {
-    let Asked { points, openings: [opening, at_goal], .. } = asked;
+fn fly(asked: &FlightInputs, room: &Room, layout: &Layout, devices: &[Body]) -> (Outcome, Swept) {
+    let FlightInputs { points, openings: [opening, at_goal], .. } = asked;
     let mut robot = asked.robot.clone();
     let start = *robot.joints();
     let mut survey = Survey::new(room, layout, devices, asked.commands, &start, &asked.before);
@@ -95,14 +95,14 @@ fn fly(asked: &Asked, room: &Room, layout: &Layout, devices: &[Body]) -> (Outcom
 
 #[derive(Debug)]
 struct Flight {
-    asked: Asked,
+    asked: FlightInputs,
     swept: Swept,
     near: Vec<Body>,
     outcome: Arc<Outcome>,
 }
 
 impl Flight {
-    fn answers(&self, asked: &Asked, devices: &[Body]) -> bool {
+    fn answers(&self, asked: &FlightInputs, devices: &[Body]) -> bool {
         let mut near = devices.iter().filter(|body| self.swept.passes(body, SIGHT));
         self.asked == *asked
             && self.near.iter().all(|known| near.next().is_some_and(|body| body.is_same(known)))
@@ -118,7 +118,7 @@ pub struct Known {
 
 impl Known {
     /// Waits if another thread checks the same flight.
-    pub(crate) fn outcome(&self, asked: Asked, room: &Room, layout: &Layout) -> Arc<Outcome> {
+    pub(crate) fn outcome(&self, asked: FlightInputs, room: &Room, layout: &Layout) -> Arc<Outcome> {
         let devices = room.devices(layout);
         let alike = Arc::clone(locked(&self.flights).entry(asked.number()).or_default());
         let mut alike = locked(&alike);

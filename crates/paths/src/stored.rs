@@ -21,7 +21,7 @@ use taskdata::{
 use crate::{
     flight::Robot,
     judge::in_words,
-    known::{Asked, Known, Points},
+    known::{FlightInputs, Known, Points},
 };
 
 #[derive(Clone, Debug)]
@@ -116,7 +116,7 @@ fn segment(room: &Room, known: &Known, from: &Frame, to: &Frame, parameters: Tra
     let start = room.at_start();
     let opening = room.worn(&start).map_or(start.opening, |gripper| gripper.opening[1]);
     let layout = Layout { opening, ..start };
-    let asked = Asked {
+    let asked = FlightInputs {
         robot,
         gripper: layout.gripper,
         held: None,

@@ -15,13 +15,13 @@ use rig::{
 
 const TICKS: usize = 25;
 
-struct Stretch {
+struct BenchCase {
     cell: Vec<u8>,
     beats: Vec<Beat>,
 }
 
 /// The `TICKS` ticks from the first one for which `begins` returns true.
-fn stretch(tape: &Tape, seed: u64, begins: impl Fn(&Cell) -> bool) -> Stretch {
+fn stretch(tape: &Tape, seed: u64, begins: impl Fn(&Cell) -> bool) -> BenchCase {
     let mut cell = Cell::new(&description(), seed).expect("the cell of the project");
     let at = tape.beats.iter().position(|beat| {
         beat.play(&mut cell);
@@ -29,10 +29,10 @@ fn stretch(tape: &Tape, seed: u64, begins: impl Fn(&Cell) -> bool) -> Stretch {
     });
     let from = at.expect("the scene has such a moment") + 1;
     let beats = tape.beats[from..from + TICKS].to_vec();
-    Stretch { cell: cell.save().expect("the cell can be saved"), beats }
+    BenchCase { cell: cell.save().expect("the cell can be saved"), beats }
 }
 
-fn ticks(criterion: &mut Criterion, name: &str, stretch: &Stretch) {
+fn ticks(criterion: &mut Criterion, name: &str, stretch: &BenchCase) {
     let description = description();
     criterion.benchmark_group("25 ticks").bench_function(name, |bencher| {
         bencher.iter_batched_ref(
@@ -50,7 +50,7 @@ fn cell(criterion: &mut Criterion) {
     }
     idle.ticks(100);
     let bytes = idle.cell.save().expect("the cell can be saved");
-    let still = Stretch { cell: bytes.clone(), beats: vec![Beat::default(); TICKS] };
+    let still = BenchCase { cell: bytes.clone(), beats: vec![Beat::default(); TICKS] };
     ticks(criterion, "arm and four parts at rest", &still);
 
     let tape = scenes::clamping(1).tape.expect("it is on tape");

@@ -104,10 +104,10 @@ impl Arm {
 
     #[must_use]
     pub fn sunk_from(actuators: &Actuators, joints: Joints) -> Self {
-        const NIGHT_S: u32 = 600;
+        const SAG_TIME_S: u32 = 600;
         let mut arm = Self::new(actuators, joints);
         arm.set_pressure(false);
-        for _ in 0..NIGHT_S * 20 {
+        for _ in 0..SAG_TIME_S * 20 {
             arm.sag(0.05, &[arm.tool_weight()]);
         }
         arm

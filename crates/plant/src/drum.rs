@@ -24,7 +24,7 @@ use crate::{
 const STIFFNESS: Real = 1.0e5; // stiffness of detents and obstacles, N/m
 /// Damping of detents and obstacles, N·s/m: about critical for a tool of 6 lb.
 const DAMPING: Real = 1.0e3;
-const BESIDE: f64 = 2.0; // greatest distance from the axis at which a tool is in front of the drum, in
+const MAX_RADIUS: f64 = 2.0; // greatest distance from the axis at which a tool is in front of the drum, in
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entering {
@@ -111,7 +111,7 @@ impl Drum {
         let left = self.description.middle - here.position.x;
         let aside = libm::hypot(here.position.y, here.position.z);
         let angle = libm::acos(here.rotation.matrix()[(0, 0)].clamp(-1.0, 1.0));
-        let before = left.abs() < self.description.finger_reach && aside < BESIDE;
+        let before = left.abs() < self.description.finger_reach && aside < MAX_RADIUS;
         before.then_some(Entering { left, aside, angle })
     }
 

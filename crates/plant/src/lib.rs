@@ -25,7 +25,7 @@
 //!   kinematics, limits and the link ([`t3`]);
 //! * without hydraulic pressure each joint is a damper that yields to the weights of links, gripper and part
 //!   ([`linkage`]) and to contacts; the shot pin stops the shoulder, and the arm jumps back when the pressure returns.
-//!   Contacts of the sagging arm are reported when it is at rest ([`cell::Droop`]);
+//!   Contacts of the sagging arm are reported when it is at rest ([`cell::SagReport`]);
 //! * the hand is a kinematic body at the tool frame, the fingers are attached by springs with the stiffness of arm,
 //!   wrist and fingers ([`gripper`]): every contact of the robot has a finite force;
 //! * a part between two pads is held by springs with limits ([`hold`]): below friction nothing creeps, beyond it the
@@ -84,7 +84,7 @@ pub mod vise;
 mod world;
 
 pub use cell::{
-    Cell, CellError, CellEvent, Droop, Half, Holders, LinkPose, Placement, RestoreError, RingState,
+    Cell, CellError, CellEvent, Half, Holders, LinkPose, Placement, RestoreError, RingState, SagReport,
     SaveError, WorkstationAction, WorkstationError, devices, part_link,
 };
 pub use description::CellDescription;

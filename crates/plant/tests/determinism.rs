@@ -3,7 +3,7 @@
 use crate::rig::{Rig, description, scenes, tape::Tape};
 use plant::{Cell, RestoreError};
 
-const GOES_ON: usize = 500; // ticks for which a restored cell is compared with the saved one
+const COMPARED_TICKS: usize = 500; // ticks for which a restored cell is compared with the saved one
 
 fn tape(rig: Rig) -> Tape {
     rig.tape.unwrap()
@@ -71,12 +71,12 @@ fn saved_and_copied_cells_continue(rig: Rig, seed: u64, every: usize) {
     for (tick, bytes, copy) in &saved {
         for mut cell in [Cell::restore(&description, bytes).unwrap(), copy.clone()] {
             assert_eq!(cell.save().unwrap(), *bytes, "saved again in tick {tick}");
-            let ahead = tape.beats.iter().zip(&tape.digests).enumerate().skip(*tick).take(GOES_ON);
+            let ahead = tape.beats.iter().zip(&tape.digests).enumerate().skip(*tick).take(COMPARED_TICKS);
             for (now, (beat, digest)) in ahead {
                 beat.play(&mut cell);
                 assert_eq!(cell.digest(), *digest, "saved in tick {tick}, differs in tick {now}");
             }
-            let later = saved.iter().find(|(other, ..)| *other == tick + GOES_ON);
+            let later = saved.iter().find(|(other, ..)| *other == tick + COMPARED_TICKS);
             assert!(
                 later.is_none_or(|(_, bytes, _)| cell.save().unwrap() == *bytes),
                 "{GOES_ON} ticks after {tick}"

@@ -7,7 +7,7 @@ use geometry::{
     kinematics::T3,
 };
 use interfaces::device::DeviceOutputs;
-use plant::{Cell, CellDescription, CellEvent, Cut, Droop, EStop, Key, WorkstationAction, t3::Stage};
+use plant::{Cell, CellDescription, CellEvent, Cut, EStop, Key, SagReport, WorkstationAction, t3::Stage};
 
 const LONGEST: u32 = 3000; // ticks within which an arm comes to rest on any obstacle
 
@@ -19,7 +19,7 @@ fn starting_at(start: [f64; 6]) -> CellDescription {
     description
 }
 
-fn settle(rig: &mut Rig) -> Droop {
+fn settle(rig: &mut Rig) -> SagReport {
     for _ in 0..LONGEST {
         rig.tick();
         if let Some(droop) = rig.cell.droop().filter(|droop| droop.at_rest) {
@@ -29,7 +29,7 @@ fn settle(rig: &mut Rig) -> Droop {
     panic!("the arm still sinks: {:?}", rig.cell.droop());
 }
 
-fn stop(rig: &mut Rig, site: EStop) -> Droop {
+fn stop(rig: &mut Rig, site: EStop) -> SagReport {
     rig.cell.press(Key::Press(site)).unwrap();
     settle(rig)
 }

@@ -3,7 +3,7 @@
 use crate::{Plain, name::Name16, table::Values, tick::Tick};
 
 /// A process consults at most this many tables in addition to the one that decides, as Prim does.
-pub const BESIDE: usize = 3;
+pub const MAX_OTHER_ROWS: usize = 3;
 
 /// The first part of every set of output buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -18,7 +18,7 @@ pub struct Header {
     pub basis: Option<Basis>,
     /// Rows of other tables that fired at the last step of the process. It was in the tick of the stamp, unless the
     /// outputs are republished.
-    pub beside: [Option<Consulted>; BESIDE],
+    pub beside: [Option<Consulted>; MAX_OTHER_ROWS],
     /// Step of the current command after the decision: its reference action (V.1.1).
     pub step: Option<Name16>,
 }

@@ -103,7 +103,7 @@ impl<'a> Pieces<'a> {
             }
             op::MESSAGE => {
                 Message::of(body)?;
-                let end = loose_end(self.bytes, at);
+                let end = messages_end(self.bytes, at);
                 return Some((Piece::Loose(at..end), end));
             }
             op::MESSAGE_INDEX => Piece::Index(u16::from_le_bytes(*body.first_chunk()?)),
@@ -162,7 +162,7 @@ impl<'a> Iterator for Pieces<'a> {
     }
 }
 
-fn loose_end(bytes: &[u8], from: usize) -> usize {
+fn messages_end(bytes: &[u8], from: usize) -> usize {
     let is_message = |(_, opcode, _): &(usize, u8, usize)| *opcode == op::MESSAGE;
     let row =
         frames(bytes, from).take_while(is_message).take_while(|(at, ..)| at.saturating_sub(from) < LOOSE);

@@ -285,7 +285,7 @@ impl Log {
     }
 
     /// Pass the channels to a tap, except those without a schema.
-    pub fn tell_channels(&self, tap: &mut dyn Tap) {
+    pub fn send_channels(&self, tap: &mut dyn Tap) {
         self.described.tell(tap);
     }
 

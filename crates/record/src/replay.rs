@@ -99,12 +99,12 @@ pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, Repla
     let log = Log::open(path)?;
     log.check_layout()?;
     let generations = match &options.data {
-        Some(data) => grown(data.clone(), &log.attachments)?,
+        Some(data) => load_generations(data.clone(), &log.attachments)?,
         None => generations(&log)?,
     };
     // Recorded states contain record numbers, which are valid only for the log's own task data.
     let length = if options.data.is_some() { usize::MAX } else { STRETCH };
-    let stretches = Stretches::new(&log, options, &generations, length);
+    let stretches = ReplayParts::new(&log, options, &generations, length);
     let Replayed { ticks, skipped, digest: computed, first_difference } = stretches.replay()?;
     if ticks == 0 {
         return Err(ReplayError::Empty);
@@ -149,10 +149,10 @@ pub(crate) fn generations_of(
 ) -> Result<Vec<Store>, ReplayError> {
     let (first, _) =
         Store::from_sources(sources).map_err(|report| ReplayError::TaskData(report.render(false)))?;
-    grown(first, attachments)
+    load_generations(first, attachments)
 }
 
-pub(crate) fn grown(first: Store, attachments: &[Attachment]) -> Result<Vec<Store>, ReplayError> {
+pub(crate) fn load_generations(first: Store, attachments: &[Attachment]) -> Result<Vec<Store>, ReplayError> {
     let mut generations = vec![first];
     let mut reloads: BTreeMap<u32, Vec<Source>> = BTreeMap::new();
     for (generation, source) in attachments.iter().filter_map(Attachment::as_reload) {
@@ -176,13 +176,13 @@ struct Replayed {
 }
 
 #[derive(Default)]
-struct Stretch {
+struct ReplayPart {
     hashes: Vec<u64>, // hashes of the output buffers of the computed ticks
     skipped: u64,
     first_difference: Option<Difference>,
 }
 
-struct Stretches<'a> {
+struct ReplayParts<'a> {
     log: &'a Log,
     options: &'a Options,
     generations: &'a [Store],
@@ -191,7 +191,7 @@ struct Stretches<'a> {
     length: usize, // parts of the log in a stretch
 }
 
-impl<'a> Stretches<'a> {
+impl<'a> ReplayParts<'a> {
     fn new(log: &'a Log, options: &'a Options, generations: &'a [Store], length: usize) -> Self {
         let comparison = Comparison::new(options.data.is_some());
         Self { log, options, generations, codecs: Codecs::new(), comparison, length }
@@ -200,7 +200,7 @@ impl<'a> Stretches<'a> {
     fn replay(&self) -> Result<Replayed, ReplayError> {
         let mut all = Replayed { ticks: 0, skipped: 0, digest: Digest::new(), first_difference: None };
         for stretch in self.in_all_processors() {
-            let Stretch { hashes, skipped, first_difference } = stretch?;
+            let ReplayPart { hashes, skipped, first_difference } = stretch?;
             all.ticks += hashes.len() as u64;
             all.skipped += skipped;
             hashes.iter().for_each(|hash| all.digest.add_hash(*hash));
@@ -213,7 +213,7 @@ impl<'a> Stretches<'a> {
     }
 
     /// The stretches in order, up to the first difference, or the first tick that cannot be computed.
-    fn in_all_processors(&self) -> impl Iterator<Item = Result<Stretch, ReplayError>> {
+    fn in_all_processors(&self) -> impl Iterator<Item = Result<ReplayPart, ReplayError>> {
         let last = AtomicUsize::new(usize::MAX);
         let stretches = parallel::map(self.log.parts().div_ceil(self.length), |number| {
             if number > last.load(Ordering::Relaxed) {
@@ -230,7 +230,7 @@ impl<'a> Stretches<'a> {
 
     /// Compute a stretch up to the first difference: from the first recorded states in its parts to the first ones
     /// after.
-    fn stretch(&self, number: usize) -> Result<Stretch, ReplayError> {
+    fn stretch(&self, number: usize) -> Result<ReplayPart, ReplayError> {
         let first = number.saturating_mul(self.length);
         let end = first.saturating_add(self.length);
         let mut ticks = self.log.ticks_from(first, &self.codecs);
@@ -275,7 +275,7 @@ struct Replayer {
     image: Vec<u8>,   // byte image of common memory after the last tick
     has_states: bool, // false if the replay needs recorded states to continue
     last: Tick,
-    stretch: Stretch,
+    stretch: ReplayPart,
 }
 
 impl Replayer {
@@ -287,12 +287,12 @@ impl Replayer {
             image: vec![0; CommonMemory::SIZE],
             has_states: true,
             last: Tick::BEFORE_START,
-            stretch: Stretch::default(),
+            stretch: ReplayPart::default(),
         }
     }
 
     /// Compute a tick again and compare it, or copy the recorded values after a gap.
-    fn step(&mut self, logged: &LoggedTick, stretches: &Stretches<'_>) -> Result<(), ReplayError> {
+    fn step(&mut self, logged: &LoggedTick, stretches: &ReplayParts<'_>) -> Result<(), ReplayError> {
         let tick = logged.tick;
         self.stretch.skipped += tick.since(self.last.next());
         if !self.has_states || tick != self.last.next() {

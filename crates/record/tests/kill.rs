@@ -78,18 +78,19 @@ fn survives(path: &Path, moment: Duration) -> bool {
     thread::sleep(moment);
     // On Unix this is SIGKILL, which the program cannot handle.
     child.kill().expect("a child can be killed");
-    let last = lines.map_while(Result::ok).filter_map(|line| Said::read(&line)).last().unwrap_or_default();
+    let last =
+        lines.map_while(Result::ok).filter_map(|line| LastMessage::read(&line)).last().unwrap_or_default();
     child.wait().expect("a killed child ends");
     begun && judge(path, moment, &last)
 }
 
 #[derive(Default)]
-struct Said {
+struct LastMessage {
     tick: u64,
     pending: u64, // ticks that waited for the writer
 }
 
-impl Said {
+impl LastMessage {
     /// A line; `None` if it is incomplete.
     fn read(line: &str) -> Option<Self> {
         let (tick, pending) = line.split_once(' ')?;
@@ -98,7 +99,7 @@ impl Said {
 }
 
 /// True if the rest of a log is sufficient.
-fn judge(path: &Path, moment: Duration, last: &Said) -> bool {
+fn judge(path: &Path, moment: Duration, last: &LastMessage) -> bool {
     let log = match Log::open(path) {
         Ok(log) => log,
         Err(error) => {
@@ -108,7 +109,7 @@ fn judge(path: &Path, moment: Duration, last: &Said) -> bool {
     };
     let kept = log.ticks().map_while(Result::ok).last().map_or(0, |tick| tick.tick.0);
     let same = kept == 0 || replay(path).is_ok_and(|report| report.is_same() && report.ticks == kept);
-    let Said { tick, pending } = *last;
+    let LastMessage { tick, pending } = *last;
     println!(
         "killed after {moment:?} in tick {tick}, {pending} waiting: the last that is left is {kept}, replayed: {same}"
     );

@@ -8,7 +8,7 @@ use depc::{
 };
 use executive::egm::{EgmOptions, Peer};
 use executive::{
-    memory::{OnStuck, RunName},
+    memory::{OnTimeout, RunName},
     overrun::Policy,
     serial::SerialSettings,
 };
@@ -102,7 +102,7 @@ pub struct RunConfig {
     /// Called to end the process if the set-up of shared memory takes too long (`executive::memory::limit`),
     /// before the robot moves; `None` for no limit.
     #[serde(skip)]
-    pub on_stuck: Option<OnStuck>,
+    pub on_stuck: Option<OnTimeout>,
     /// Ends the run when it is set. The robot is first brought to rest.
     #[serde(skip)]
     pub stop: Arc<AtomicBool>,

@@ -20,7 +20,7 @@ use sessions::{data_system, network::NetEvent, pedestal, vision};
 
 use closed_loop::{
     contacts::ContactEvent,
-    field::{FieldEvent, Happened},
+    field::{FieldChange, FieldEvent},
     truth::Confirmation,
 };
 
@@ -127,7 +127,7 @@ impl Event {
             Self::Untrue(confirmation) if confirmation.is_false() => Level::Error,
             Self::Contact(_) | Self::CellStatusUnsent(_) | Self::Stops | Self::WentWrong(_) => Level::Error,
             Self::RealTime { complete: true, .. } => Level::Info,
-            Self::Field(FieldEvent { what: Happened::Back(_) | Happened::Released, .. }) => Level::Info,
+            Self::Field(FieldEvent { what: FieldChange::Back(_) | FieldChange::Released, .. }) => Level::Info,
             Self::Network(NetEvent::Connected(_)) => Level::Info,
             Self::HandedOver | Self::TakenBack | Self::Loaded { .. } | Self::Changed(_) | Self::Punctual => {
                 Level::Info

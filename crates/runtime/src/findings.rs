@@ -46,7 +46,7 @@ impl Findings {
         let is_entry = |finding: &&Diagnostic| is_sound && finding.block().is_none();
         let mut job = if is_sound { job.clone().with(of_job.clone()) } else { job.clone() };
         // Equal findings of several lines are counted once.
-        Diagnostics::tell_once(&mut [&mut job]);
+        Diagnostics::merge_repeated(&mut [&mut job]);
         Self {
             data: Count::of(data).and(of_cell, is_form),
             job: Count::of(&job),

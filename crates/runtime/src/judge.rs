@@ -5,7 +5,7 @@
 //! records, which `--unchecked` permits. PAUSE always passes.
 
 use closed_loop::{JobPlayer, generations::Generations, workstation::SimulatedWorkstation};
-use diagnostics::{Group, Suspects, grouped};
+use diagnostics::{DataGroup, Group, grouped};
 use interfaces::{CommonMemory, HwsCommand, emove::Holding};
 use neighbours::{
     mailbox::Mailbox,
@@ -143,11 +143,11 @@ pub fn add_paths(store: &mut Store, job: &mut Job, cell: &CellDescription) -> Wa
 fn path_faults(findings: &[&Finding], store: &Store) -> Vec<Fault> {
     let named = |finding: &&&Finding| !finding.data.is_empty();
     let findings: Vec<&Finding> = findings.iter().filter(named).copied().collect();
-    let suspects = |finding: &&Finding| Suspects {
+    let suspects = |finding: &&Finding| DataGroup {
         data: finding.data.iter().map(|datum| datum.name.clone()).collect(),
         error: true,
     };
-    let suspects: Vec<Suspects> = findings.iter().map(suspects).collect();
+    let suspects: Vec<DataGroup> = findings.iter().map(suspects).collect();
     let fault = |group: &Group| {
         let first = findings.get(*group.findings.first()?)?;
         let datum = first.data.iter().find(|datum| datum.name == group.datum)?;

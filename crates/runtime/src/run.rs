@@ -263,7 +263,7 @@ impl Run {
         self.write_journal(tick);
         self.tell_contradictions(tick);
         self.load_for_workstation(tick);
-        self.tell_operators(tick);
+        self.publish_news(tick);
         self.note_neighbours(tick);
         self.note_viewers(tick);
         self.publish_cell(tick);
@@ -276,7 +276,7 @@ impl Run {
                 self.remedy = self.remedy.or(failure.remedy());
                 self.end_at_rest(self.explain(&failure, &external));
             }
-            player::Progress::Running => self.end_if_nobody_asks(tick),
+            player::Progress::Running => self.end_without_inputs(tick),
         }
         // An obstacle stops an arm that sinks without pressure. The verdict is the emergency.
         let workstation = &self.closed.workstation;

@@ -31,7 +31,7 @@ use crate::{
 const HOME: &str = "HOME"; // location of the robot when the workstation controller takes over (IV.4.1)
 const PAUSE: &str = "PAUSE"; // last command before the workstation controller takes over
 
-pub struct Around<'a> {
+pub struct SwitchContext<'a> {
     pub tick: Tick,
     /// Common memory after the tick and the task data, and the verdict on commands.
     pub judge: CommandJudge<'a>,
@@ -104,7 +104,7 @@ impl Switched {
 
     pub fn step(
         &mut self,
-        around: &Around<'_>,
+        around: &SwitchContext<'_>,
         gate: &mut Gate,
         workstation: &mut SimulatedWorkstation,
         events: &mut Vec<Event>,
@@ -117,7 +117,12 @@ impl Switched {
         if self.is_handed_over() { self.hand_over(around, gate, events) } else { progress }
     }
 
-    fn hand_over(&mut self, around: &Around<'_>, gate: &mut Gate, events: &mut Vec<Event>) -> Progress {
+    fn hand_over(
+        &mut self,
+        around: &SwitchContext<'_>,
+        gate: &mut Gate,
+        events: &mut Vec<Event>,
+    ) -> Progress {
         if let Some(obstacle) = obstacle(around.judge.memory, gate.command(), around.has_data_system) {
             return self.refuse(around.tick, obstacle);
         }
@@ -143,7 +148,7 @@ impl Switched {
     /// Follow the workstation controller's commands, or its disconnection.
     fn follow(
         &mut self,
-        around: &Around<'_>,
+        around: &SwitchContext<'_>,
         gate: &mut Gate,
         workstation: &mut SimulatedWorkstation,
         events: &mut Vec<Event>,

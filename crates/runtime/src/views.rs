@@ -25,7 +25,7 @@ use crate::{
     operator::{Operator, is_moved_by_hand},
 };
 
-pub struct Around<'a> {
+pub struct ViewContext<'a> {
     pub tick: Tick,
     pub memory: &'a CommonMemory,
     pub neighbours: &'a Neighbours,
@@ -48,7 +48,7 @@ pub struct Viewed {
 }
 
 impl Viewed {
-    pub fn look(&mut self, around: &Around<'_>, mut log: impl FnMut(View)) {
+    pub fn look(&mut self, around: &ViewContext<'_>, mut log: impl FnMut(View)) {
         let job = around.neighbours.job();
         let lines = job.map(|job| (job.lines().len(), around.played));
         if self.lines != lines {

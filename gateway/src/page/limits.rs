@@ -31,15 +31,15 @@ impl From<IpAddr> for Source {
 }
 
 #[derive(Clone, Default)]
-pub struct Strangers(Arc<Mutex<BTreeMap<Source, usize>>>);
+pub struct PeerCounts(Arc<Mutex<BTreeMap<Source, usize>>>);
 
 /// A connection without a login. It is counted until it is dropped.
 pub struct Stranger {
-    all: Strangers,
+    all: PeerCounts,
     source: Source,
 }
 
-impl Strangers {
+impl PeerCounts {
     fn lock(&self) -> MutexGuard<'_, BTreeMap<Source, usize>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn connections_of_strangers_are_bounded_per_address_and_in_total() {
-        let strangers = Strangers::default();
+        let strangers = PeerCounts::default();
         let mut open: Vec<_> = (0..OF_ADDRESS).map(|_| strangers.admit(numbered(0)).unwrap()).collect();
         assert!(strangers.admit(numbered(0)).is_none());
         open.extend((OF_ADDRESS..CONNECTIONS).map(|at| strangers.admit(numbered(at as u32)).unwrap()));

@@ -37,7 +37,7 @@ use crate::{
     keys::Keys,
     page::{
         http::{BAD, Refusal, Request},
-        limits::{Source, Stranger, Strangers, Tries},
+        limits::{PeerCounts, Source, Stranger, Tries},
         logins::{Connection, Logins, VALIDITY},
         people::People,
         pump::{Ended, Upward, pump},
@@ -59,7 +59,7 @@ struct Gateway {
     tls: Arc<ServerConfig>,
     people: Mutex<People>,
     logins: Logins,
-    strangers: Strangers,
+    strangers: PeerCounts,
     tries: Tries,
     checking: Mutex<()>, // one secret is checked at a time: a check takes 19 MB and tens of milliseconds
 }
@@ -85,7 +85,7 @@ pub fn page(arguments: &PageArguments) -> Result<(), Error> {
         tls,
         people: Mutex::new(people),
         logins: Logins::default(),
-        strangers: Strangers::default(),
+        strangers: PeerCounts::default(),
         tries: Tries::default(),
         checking: Mutex::new(()),
     });

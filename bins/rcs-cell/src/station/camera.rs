@@ -21,20 +21,21 @@ const PAUSE: Duration = Duration::from_millis(500); // wait for a run, and pause
 
 /// Requests between the thread and the cell, with the station's own numbers, because each run restarts its numbers.
 #[derive(Debug, Default)]
-struct Desk {
+struct VisionExchange {
     request: Option<VisionRequest>,
     number: u32,
     response: VisionResponse,
 }
 
 pub struct Camera {
-    desk: Arc<Mutex<Desk>>,
+    desk: Arc<Mutex<VisionExchange>>,
     stop: Arc<AtomicBool>,
 }
 
 impl Camera {
     pub fn start(address: Address) -> Result<Self, String> {
-        let (desk, stop) = (Arc::new(Mutex::new(Desk::default())), Arc::new(AtomicBool::new(false)));
+        let (desk, stop) =
+            (Arc::new(Mutex::new(VisionExchange::default())), Arc::new(AtomicBool::new(false)));
         let (shared, ended) = (Arc::clone(&desk), Arc::clone(&stop));
         // A thread that waits for a run does not keep the program from ending.
         thread::Builder::new()
@@ -65,12 +66,12 @@ impl Drop for Camera {
     }
 }
 
-fn locked(desk: &Mutex<Desk>) -> MutexGuard<'_, Desk> {
+fn locked(desk: &Mutex<VisionExchange>) -> MutexGuard<'_, VisionExchange> {
     // All values of a desk are valid, even after a panic.
     desk.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn serve(address: &Address, desk: &Mutex<Desk>, stop: &AtomicBool) {
+fn serve(address: &Address, desk: &Mutex<VisionExchange>, stop: &AtomicBool) {
     let mut refused = None;
     while !stop.load(Ordering::Relaxed) {
         match Peer::connect_within(PAUSE, address, Role::Vision) {
@@ -79,7 +80,7 @@ fn serve(address: &Address, desk: &Mutex<Desk>, stop: &AtomicBool) {
                 refused = None;
                 let ended = attend(&mut peer, desk, stop);
                 let number = locked(desk).number;
-                *locked(desk) = Desk { number, ..Desk::default() };
+                *locked(desk) = VisionExchange { number, ..VisionExchange::default() };
                 if let Err(error) = ended {
                     stdout_line!("[vision] {error}");
                 }
@@ -96,7 +97,7 @@ fn serve(address: &Address, desk: &Mutex<Desk>, stop: &AtomicBool) {
     }
 }
 
-fn attend(peer: &mut Peer, desk: &Mutex<Desk>, stop: &AtomicBool) -> Result<(), PeerError> {
+fn attend(peer: &mut Peer, desk: &Mutex<VisionExchange>, stop: &AtomicBool) -> Result<(), PeerError> {
     let mut response_box = Mailbox::initialized(VISION_RESPONSE);
     let mut read = 0;
     while !stop.load(Ordering::Relaxed) {

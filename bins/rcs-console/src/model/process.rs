@@ -11,7 +11,7 @@ use rcs_core::{
 use super::{Section, Text, Tone};
 use crate::rcs_console::{
     picture::Picture,
-    story::{Doing, Story},
+    story::{ProcessState, Story},
 };
 
 /// The table that decided last, with the fired row marked and its conditions. Lines without the filter's text are
@@ -131,7 +131,7 @@ pub fn rows(process: ProcessId, picture: &Picture, story: &Story) -> Section {
     Section::new("rows that fired, newest first", lines)
 }
 
-fn row_line(info: &ProcessInfo, doing: &Doing, end: u64) -> Text {
+fn row_line(info: &ProcessInfo, doing: &ProcessState, end: u64) -> Text {
     let lasted = end.saturating_sub(doing.tick) as f64 * TICK_S;
     let row = doing.decided.and_then(|decided| info.row(decided));
     let text = row.map_or_else(

@@ -6,8 +6,8 @@ use std::{
 };
 
 use executive::memory::{
-    Attached, OnStuck, ReadError, RunName, SET_UP_LIMIT, SharedMemoryError, cell::CellView, field::FieldView,
-    within_limit,
+    Attached, OnTimeout, ReadError, RunName, SET_UP_LIMIT, SharedMemoryError, cell::CellView,
+    field::FieldView, within_limit,
 };
 
 use super::{About, Cell, Source, State, seen};
@@ -34,7 +34,7 @@ pub struct Live {
 
 impl Live {
     /// Attach to a run. Fails if the run does not exist, was built from other sources, or cannot be read.
-    pub fn open(name: &RunName, on_stuck: Option<OnStuck>) -> Result<Self, SharedMemoryError> {
+    pub fn open(name: &RunName, on_stuck: Option<OnTimeout>) -> Result<Self, SharedMemoryError> {
         let run = within_limit(SET_UP_LIMIT, on_stuck, || Attached::open(name))?;
         let mut live = Self {
             run,

@@ -22,7 +22,7 @@ use crate::rcs_console::{
 const LEAST_TEXT: usize = 24; // least number of columns for the text of a row
 const COMMAND: usize = 19; // columns for a command on the smallest terminal
 /// Smallest body with both hierarchy and process, as columns and lines. Each process or neighbour takes two lines.
-const BESIDE: (usize, usize) = (120, 33);
+const SIDE_COLUMNS: (usize, usize) = (120, 33);
 const HIERARCHY: usize = 43; // columns of the hierarchy without the row, if the process is shown too
 const ROW: (usize, usize) = (15, 30); // least and most columns for its row
 
@@ -51,7 +51,7 @@ pub fn body(
     room: usize,
 ) -> Vec<Line<'static>> {
     let ladder = ladder::lines(picture, model.last.as_ref(), source.story());
-    if width >= BESIDE.0 && room >= BESIDE.1 {
+    if width >= SIDE_COLUMNS.0 && room >= SIDE_COLUMNS.1 {
         return beside(&ladder, model, picture, source, look, width, room);
     }
     let widths = Widths::of(width, &ladder);

@@ -231,7 +231,7 @@ fn news(model: &Model, source: &dyn Source, about: &About<'_>, look: Look, width
     if let Some(answer) = &model.answer {
         return line(Tone::Marked, &format!(" {answer}"));
     }
-    if let Some((tone, text)) = model.operating.as_ref().and_then(said_last) {
+    if let Some((tone, text)) = model.operating.as_ref().and_then(last_answer) {
         return line(tone, &text);
     }
     let tick = model.tick();
@@ -257,7 +257,7 @@ fn news(model: &Model, source: &dyn Source, about: &About<'_>, look: Look, width
 }
 
 /// The result of the last request if it was refused or the connection is lost.
-fn said_last(operating: &Operating) -> Option<(Tone, String)> {
+fn last_answer(operating: &Operating) -> Option<(Tone, String)> {
     if let Some(lost) = &operating.lost {
         return Some((Tone::Trouble, format!("!!{lost}")));
     }

@@ -60,7 +60,7 @@ fn do_all_steps(console: &mut Terminal, pause: Duration) {
         };
         while !has_next(&console.screen()) {
             let screen = console.screen();
-            if begun.elapsed() > PATIENCE {
+            if begun.elapsed() > TIME_LIMIT {
                 console.press("1");
                 console.wait_for(">1 Ladder");
                 panic!("step {step} is not done, after {done:?}:\n{screen}\n{}", console.screen());
@@ -103,7 +103,7 @@ fn recording_shows_the_start_up_and_a_taught_point() {
             if matches!(answer, Ok(Ok(_))) {
                 break;
             }
-            assert!(begun.elapsed() < PATIENCE, "{line}: {answer:?}");
+            assert!(begun.elapsed() < TIME_LIMIT, "{line}: {answer:?}");
         }
     }
     let mut console = Terminal::start(&["--run", &name, "--operate"], directory.path(), &[]);

@@ -14,7 +14,7 @@ const FASTEST: f64 = 0.5; // greatest share of the box's velocity
 const SLOWEST: f64 = 0.02;
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum What {
+pub enum DisturbanceKind {
     /// The joystick leads the robot by this vector, world, 0.01 in.
     Jog([i32; 3]),
     Take(usize),
@@ -46,14 +46,14 @@ impl Follow {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Disturbance {
-    pub what: What,
+    pub what: DisturbanceKind,
     pub then: Follow,
 }
 
 /// Names of the kinds, in the order of their words.
 pub const WORDS: [&str; 5] = ["jog", "take", "move", "swap", "add"];
 
-impl What {
+impl DisturbanceKind {
     #[must_use]
     pub const fn word(&self) -> &'static str {
         match self {
@@ -72,11 +72,11 @@ impl fmt::Display for Disturbance {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.what.word())?;
         match &self.what {
-            What::Jog([x, y, z]) => write!(f, ":{x}:{y}:{z}"),
-            What::Take(part) => write!(f, ":{part}"),
-            What::Move(part, [x, y]) => write!(f, ":{part}:{x}:{y}"),
-            What::Swap(part, kind) => write!(f, ":{part}:{kind}"),
-            What::Add(kind, place, sector) => write!(f, ":{kind}:{place}:{sector}"),
+            DisturbanceKind::Jog([x, y, z]) => write!(f, ":{x}:{y}:{z}"),
+            DisturbanceKind::Take(part) => write!(f, ":{part}"),
+            DisturbanceKind::Move(part, [x, y]) => write!(f, ":{part}:{x}:{y}"),
+            DisturbanceKind::Swap(part, kind) => write!(f, ":{part}:{kind}"),
+            DisturbanceKind::Add(kind, place, sector) => write!(f, ":{kind}:{place}:{sector}"),
         }?;
         f.write_str(self.then.text())
     }
@@ -90,12 +90,12 @@ impl Disturbance {
         let words: Vec<&str> = text.split(':').collect();
         let number = |word: &str| word.parse().ok();
         let what = match words[..] {
-            ["jog", x, y, z] => What::Jog([number(x)?, number(y)?, number(z)?]),
-            ["take", part] => What::Take(part.parse().ok()?),
-            ["move", part, x, y] => What::Move(part.parse().ok()?, [number(x)?, number(y)?]),
-            ["swap", part, kind] => What::Swap(part.parse().ok()?, kind.to_owned()),
+            ["jog", x, y, z] => DisturbanceKind::Jog([number(x)?, number(y)?, number(z)?]),
+            ["take", part] => DisturbanceKind::Take(part.parse().ok()?),
+            ["move", part, x, y] => DisturbanceKind::Move(part.parse().ok()?, [number(x)?, number(y)?]),
+            ["swap", part, kind] => DisturbanceKind::Swap(part.parse().ok()?, kind.to_owned()),
             ["add", kind, place, sector] => {
-                What::Add(kind.to_owned(), place.to_owned(), sector.parse().ok()?)
+                DisturbanceKind::Add(kind.to_owned(), place.to_owned(), sector.parse().ok()?)
             }
             _ => return None,
         };
@@ -188,7 +188,7 @@ fn free(cell: &Cell) -> Vec<u32> {
 
 /// Change the cell. Returns the numbers of the changed parts, and the step that undoes the change. On error, the cell
 /// is unchanged.
-pub fn change(cell: &mut Cell, what: &What) -> Result<(Vec<u32>, Vec<Undo>), String> {
+pub fn change(cell: &mut Cell, what: &DisturbanceKind) -> Result<(Vec<u32>, Vec<Undo>), String> {
     let said = |error: WorkstationError| error.to_string();
     let chosen = |cell: &Cell, number: usize| {
         let parts = free(cell);
@@ -199,19 +199,19 @@ pub fn change(cell: &mut Cell, what: &What) -> Result<(Vec<u32>, Vec<Undo>), Str
         Ok::<_, String>((id, frame, name))
     };
     match what {
-        What::Jog(_) => Ok((Vec::new(), Vec::new())),
-        What::Take(part) => {
+        DisturbanceKind::Jog(_) => Ok((Vec::new(), Vec::new())),
+        DisturbanceKind::Take(part) => {
             let (id, frame, name) = chosen(cell, *part)?;
             cell.take_part(id).map_err(said)?;
             Ok((vec![id], vec![Undo::Put(name, frame)]))
         }
-        What::Move(part, [x, y]) => {
+        DisturbanceKind::Move(part, [x, y]) => {
             let (id, frame, _) = chosen(cell, *part)?;
             let moved = Frame { position: frame.position + inches([*x, *y, 0]), ..frame };
             cell.move_part(id, &moved).map_err(said)?;
             Ok((vec![id], vec![Undo::Back(id, frame)]))
         }
-        What::Swap(part, kind) => {
+        DisturbanceKind::Swap(part, kind) => {
             let (id, frame, name) = chosen(cell, *part)?;
             cell.take_part(id).map_err(said)?;
             let height = |name: &str| cell.description().part(name).map_or(0.0, |kind| kind.size[0] / 2.0);
@@ -226,7 +226,7 @@ pub fn change(cell: &mut Cell, what: &What) -> Result<(Vec<u32>, Vec<Undo>), Str
             }
             Ok((vec![id, new], vec![Undo::Remove(new), Undo::Put(name, frame)]))
         }
-        What::Add(kind, place, sector) => {
+        DisturbanceKind::Add(kind, place, sector) => {
             let new = cell.next_part_number();
             let action = if *place == cell.description().drum.location {
                 WorkstationAction::DrumTool { part: kind.clone() }

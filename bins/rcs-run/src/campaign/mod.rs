@@ -58,7 +58,7 @@ use self::{
     pool::Plan,
     random::Draw,
     report::CampaignReport,
-    runner::{Keep, Runner},
+    runner::{CoveragePart, Runner},
     series::Series,
     trial::{NoObserver, Procedure, Until},
     verdict::{BranchResult, Verdict},
@@ -111,7 +111,7 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
                 return Ok(None);
             }
             let runner = Runner::new(arguments, &facility, &parent, procedure, plans.len())?;
-            let judged = runner.run(&plans, Keep::New)?;
+            let judged = runner.run(&plans, CoveragePart::New)?;
             (plans, judged, runner.finish())
         }
     };

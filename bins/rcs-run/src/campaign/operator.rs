@@ -31,8 +31,8 @@ const LOOK: u64 = 125;
 const ECHO_LIMIT: u64 = 25; // ticks within which Task must echo a command
 
 #[derive(Clone, Debug, PartialEq)]
-enum Doing {
-    Own(Then),
+enum Activity {
+    Own(NextStep),
     Pause,
     Command,
     Failed,
@@ -45,7 +45,7 @@ enum Doing {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Then {
+pub enum NextStep {
     Recovery,
     /// The interrupted command, without recovery.
     SameCommand,
@@ -75,7 +75,7 @@ pub struct Ended {
 }
 
 #[derive(Debug)]
-struct Later {
+struct DelayedAction {
     due: Tick,
     action: Action,
     text: String,
@@ -84,7 +84,7 @@ struct Later {
 pub struct Operator<'f> {
     lines: &'f [JobLine],
     current: usize, // position in the job: 0 is the first PAUSE, `n` is `lines[n - 1]`
-    doing: Doing,
+    doing: Activity,
     began: Tick, // tick in which the command or the action began
     number: u32,
     replaced: Option<u32>, // number of the job's command that a command of the operator replaces
@@ -100,7 +100,7 @@ pub struct Operator<'f> {
     tried: u32,
     remedied: bool,            // the remedy of the reason was applied to the present line
     second_pause: Option<u64>, // ticks from the first repeated command to its PAUSE; `None` for no PAUSE
-    later: Vec<Later>,
+    later: Vec<DelayedAction>,
     delayed: Vec<(u64, Action, String)>,
     ended: Vec<Ended>,
     reason: String,
@@ -114,7 +114,7 @@ impl<'f> Operator<'f> {
         let mut operator = Self {
             lines,
             current,
-            doing: Doing::Over,
+            doing: Activity::Over,
             began,
             number: last.number,
             replaced: None,
@@ -133,7 +133,8 @@ impl<'f> Operator<'f> {
             reason: String::new(),
             has_remedied: false,
         };
-        operator.doing = if operator.command_at(current).is_some() { Doing::Command } else { Doing::Action };
+        operator.doing =
+            if operator.command_at(current).is_some() { Activity::Command } else { Activity::Action };
         operator
     }
 
@@ -157,7 +158,7 @@ impl<'f> Operator<'f> {
     /// A person has applied the remedy of a failed command: all tries are available again, and PAUSE is next.
     pub fn retry(&mut self) {
         self.tried = 0;
-        self.doing = Doing::Failed;
+        self.doing = Activity::Failed;
     }
 
     #[must_use]
@@ -196,34 +197,34 @@ impl<'f> Operator<'f> {
     }
 
     pub fn pause(&mut self, tick: Tick) {
-        self.replace(Doing::Pause);
+        self.replace(Activity::Pause);
         self.send(tick, &pause());
     }
 
     /// Send a command that is not one of the job.
-    pub fn interject(&mut self, tick: Tick, command: &HwsCommand, then: Then) {
+    pub fn interject(&mut self, tick: Tick, command: &HwsCommand, then: NextStep) {
         self.has_finished = false;
-        self.replace(Doing::Own(then));
+        self.replace(Activity::Own(then));
         self.send(tick, command);
     }
 
     /// The operator's next command replaces the job's, which may finish before Task accepts it.
-    fn replace(&mut self, doing: Doing) {
-        self.replaced = (self.doing == Doing::Command).then_some(self.number);
+    fn replace(&mut self, doing: Activity) {
+        self.replaced = (self.doing == Activity::Command).then_some(self.number);
         self.doing = doing;
     }
 
     /// True if the operator has sent another motion instead of the command of the job.
     #[must_use]
     pub const fn has_replaced(&self) -> bool {
-        matches!(self.doing, Doing::Own(Then::SameCommand))
+        matches!(self.doing, Activity::Own(NextStep::SameCommand))
     }
 
     /// The state after tick `now` on which the operator's next action depends. Commands are numbered from `newest`.
     /// After [`Self::waits_until`], the state excludes the start of the command.
     pub fn state(&self, now: Tick, newest: u32) -> impl fmt::Debug {
         let is_echoed = now.since(self.began) > ECHO_LIMIT.max(REST_LIMIT);
-        let is_timed = self.doing != Doing::Command || !is_echoed || self.second_pause.is_some();
+        let is_timed = self.doing != Activity::Command || !is_echoed || self.second_pause.is_some();
         let began = is_timed.then_some(self.began);
         let since = |number: u32| number.wrapping_sub(newest);
         let outgoing = self.outgoing.map(|command| HwsCommand { number: since(command.number), ..command });
@@ -245,13 +246,13 @@ impl<'f> Operator<'f> {
 
     #[must_use]
     pub fn is_over(&self) -> bool {
-        self.doing == Doing::Over && self.later.is_empty()
+        self.doing == Activity::Over && self.later.is_empty()
     }
 
     /// The reason why the job does not continue, if any.
     #[must_use]
     pub fn stranded(&self) -> Option<&str> {
-        (self.doing == Doing::Stranded).then_some(self.reason.as_str())
+        (self.doing == Activity::Stranded).then_some(self.reason.as_str())
     }
 
     fn send(&mut self, tick: Tick, command: &HwsCommand) {
@@ -297,20 +298,20 @@ impl<'f> Operator<'f> {
         match self.command_at(self.current) {
             Some(command) => {
                 self.tried += 1;
-                self.doing = Doing::Command;
+                self.doing = Activity::Command;
                 self.send(tick, &command);
             }
             None if self.failed_line.is_some() => {
                 self.tried += 1;
-                self.doing = Doing::Begin;
+                self.doing = Activity::Begin;
             }
-            None => self.doing = Doing::Action,
+            None => self.doing = Activity::Action,
         }
     }
 
-    fn strand(&mut self, reason: String) {
+    fn fail_recovery(&mut self, reason: String) {
         self.reason = reason;
-        self.doing = Doing::Stranded;
+        self.doing = Activity::Stranded;
     }
 
     fn failed(&mut self, tick: Tick, reason: String) {
@@ -318,13 +319,13 @@ impl<'f> Operator<'f> {
             match self.remedy(&reason) {
                 Some(command) => {
                     (self.tried, self.remedied, self.has_remedied) = (0, true, true);
-                    self.interject(tick, &command, Then::Recovery);
+                    self.interject(tick, &command, NextStep::Recovery);
                 }
-                None => self.strand(reason),
+                None => self.fail_recovery(reason),
             }
         } else if self.is_waiting {
             self.reason = reason;
-            self.doing = Doing::Failed;
+            self.doing = Activity::Failed;
         } else {
             self.recover(tick);
         }
@@ -350,14 +351,14 @@ impl<'f> Operator<'f> {
         (self.began, self.failed_line) = (tick, None);
         let lines = self.lines;
         let Some(line) = lines.get(self.current - 1) else {
-            self.doing = Doing::Over;
+            self.doing = Activity::Over;
             return;
         };
-        self.doing = Doing::Action;
+        self.doing = Activity::Action;
         match &line.step {
             Step::Command(command) => {
-                self.doing = Doing::Command;
-                self.later.extend(self.delayed.drain(..).map(|(ticks, action, text)| Later {
+                self.doing = Activity::Command;
+                self.later.extend(self.delayed.drain(..).map(|(ticks, action, text)| DelayedAction {
                     due: Tick(tick.0.saturating_add(ticks)),
                     action,
                     text,
@@ -374,12 +375,12 @@ impl<'f> Operator<'f> {
 
     /// Begins the current line of the workstation.
     fn begin(&mut self, workstation: &mut SimulatedWorkstation) {
-        self.doing = Doing::Action;
+        self.doing = Activity::Action;
         let line = self.current.checked_sub(1).and_then(|at| self.lines.get(at));
         if let Some(JobLine { step: Step::Workstation(action), text, .. }) = line
             && let Err(refused) = workstation.begin(action, text)
         {
-            self.strand(format!("workstation: {refused}"));
+            self.fail_recovery(format!("workstation: {refused}"));
         }
     }
 
@@ -432,22 +433,22 @@ impl Commander for Operator<'_> {
         if let Some(fault) = workstation.fault() {
             let reason = format!("workstation: {fault}");
             let why = workstation.line_failure().map(|failure| &failure.why);
-            if let (Some(why), Doing::Action) = (why, &self.doing) {
+            if let (Some(why), Activity::Action) = (why, &self.doing) {
                 self.failed_line = Some(matches!(why, Why::Unknown(_)));
                 self.note_line(tick, &reason);
                 self.failed(tick, reason);
             } else {
-                self.strand(reason);
+                self.fail_recovery(reason);
             }
         }
         let echo = u32::from(status.echo);
         self.has_finished |= self.replaced == Some(echo) && status.report == HwsReport::Finished;
         self.replaced = self.replaced.filter(|_| echo != self.number);
         match self.doing.clone() {
-            Doing::Over | Doing::Stranded => {}
-            Doing::Failed if self.is_waiting => {}
-            Doing::Failed => self.recover(tick),
-            Doing::Own(then) => {
+            Activity::Over | Activity::Stranded => {}
+            Activity::Failed if self.is_waiting => {}
+            Activity::Failed => self.recover(tick),
+            Activity::Own(then) => {
                 if let Some(end) = self.end(tick, status) {
                     self.note(
                         tick,
@@ -456,14 +457,14 @@ impl Commander for Operator<'_> {
                         &end,
                     );
                     match then {
-                        Then::Recovery => self.recover(tick),
-                        Then::SameCommand if self.has_finished => self.next(tick, workstation),
-                        Then::SameCommand => self.same(tick),
-                        Then::Nothing => self.doing = Doing::Over,
+                        NextStep::Recovery => self.recover(tick),
+                        NextStep::SameCommand if self.has_finished => self.next(tick, workstation),
+                        NextStep::SameCommand => self.same(tick),
+                        NextStep::Nothing => self.doing = Activity::Over,
                     }
                 }
             }
-            Doing::Pause => {
+            Activity::Pause => {
                 if let Some(end) = self.end(tick, status) {
                     self.note(tick, &pause(), false, &end);
                     if self.has_finished {
@@ -473,8 +474,8 @@ impl Commander for Operator<'_> {
                     }
                 }
             }
-            Doing::Command => self.follow(tick, status, workstation),
-            Doing::Begin if self.failed_line == Some(true) => {
+            Activity::Command => self.follow(tick, status, workstation),
+            Activity::Begin if self.failed_line == Some(true) => {
                 // A person looks, after the device has had time to end what it may have begun.
                 if self.is_machined(workstation) {
                     self.next(tick, workstation);
@@ -482,8 +483,8 @@ impl Commander for Operator<'_> {
                     self.begin(workstation);
                 }
             }
-            Doing::Begin => self.begin(workstation),
-            Doing::Action => {
+            Activity::Begin => self.begin(workstation),
+            Activity::Action => {
                 if self.is_done(tick, workstation) {
                     self.next(tick, workstation);
                 }
@@ -521,7 +522,7 @@ pub struct Watching<'o, 'f>(pub &'o mut Operator<'f>);
 impl Commander for Watching<'_, '_> {
     fn step(&mut self, _: Tick, status: &Status<'_>, _: &mut SimulatedWorkstation) -> Option<HwsCommand> {
         let Self(operator) = self;
-        let is_current = operator.doing == Doing::Command && u32::from(status.echo) == operator.number;
+        let is_current = operator.doing == Activity::Command && u32::from(status.echo) == operator.number;
         operator.has_finished |= is_current && status.report == HwsReport::Finished;
         None
     }

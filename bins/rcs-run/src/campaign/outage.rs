@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use closed_loop::field::{FieldEvent, Happened};
+use closed_loop::field::{FieldChange, FieldEvent};
 use couplers::{OutWords, State};
 use depc::fault::{FaultKind, Plan, Rule};
 use field::Mapping;
@@ -134,7 +134,7 @@ impl OutageMonitor {
 
     /// The broken promises of the last tick.
     pub fn look(&mut self, branch: &Branch<'_>) -> Vec<String> {
-        self.has_released |= branch.field_events.iter().any(|event| event.what == Happened::Released);
+        self.has_released |= branch.field_events.iter().any(|event| event.what == FieldChange::Released);
         let slips = branch.events.iter().filter(|event| matches!(event, CellEvent::Slipped { .. }));
         let mut broken: Vec<String> = slips.map(ToString::to_string).collect();
         let Some(field) = branch.field() else { return broken };

@@ -26,7 +26,7 @@ use crate::rcs_run::error::Error;
 
 /// The part of a branch's coverage that is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Keep {
+pub enum CoveragePart {
     /// Rows and states that no earlier branch has reached.
     New,
     /// The whole coverage, on which the next draw depends.
@@ -62,7 +62,7 @@ impl<'a> Runner<'a> {
     }
 
     /// Run the branches that the journal does not contain, and return all of them in order.
-    pub fn run(&self, plans: &[Plan], keep: Keep) -> Result<Vec<Judged>, Error> {
+    pub fn run(&self, plans: &[Plan], keep: CoveragePart) -> Result<Vec<Judged>, Error> {
         let known: Vec<Option<Judged>> = plans.iter().map(|plan| self.journal.known(plan).cloned()).collect();
         let missing = plans.iter().zip(&known).filter(|(_, known)| known.is_none());
         let missing: Vec<Plan> = missing.map(|(plan, _)| plan.clone()).collect();
@@ -72,13 +72,13 @@ impl<'a> Runner<'a> {
         let done = |result: BranchResult, met: Coverage| {
             self.warn(&result);
             let new = self.learn(met.clone());
-            let kept = if keep == Keep::All { met } else { new };
+            let kept = if keep == CoveragePart::All { met } else { new };
             self.journal.write(&result, &kept)?;
             Ok((result, kept))
         };
         // A branch reaches nothing new after a known state. But a draw needs the whole coverage of each branch, and the
         // state of couplers is not compared.
-        let compares = keep == Keep::New && self.facility.mapping.is_none();
+        let compares = keep == CoveragePart::New && self.facility.mapping.is_none();
         let states = compares.then_some(&self.known);
         let mut run =
             pool::run(self.facility, self.parent, &missing, self.threads, states, &done)?.into_iter();
@@ -93,7 +93,7 @@ impl<'a> Runner<'a> {
             if round.is_empty() {
                 return Ok((plans, judged));
             }
-            let results = self.run(&round, Keep::All)?;
+            let results = self.run(&round, CoveragePart::All)?;
             for (plan, (_, met)) in round.iter().zip(&results) {
                 draw.learn(plan, met.clone());
             }

@@ -14,7 +14,7 @@ use rcs_core::tick::Tick;
 
 use super::{
     branch::Branch,
-    disturbance::{self, Lead, Undo, What},
+    disturbance::{self, DisturbanceKind, Lead, Undo},
     outage::{self, Outage},
     power,
 };
@@ -79,13 +79,13 @@ pub enum ScriptStep {
     AirLost(u64), // the supply of air fails for a number of ticks
     Answer(FaultKind),
     Faults(Arc<FaultFile>),
-    Enter,        // ENTER, if the robot controller shows a warning
-    StartUp,      // the start-up at the panel, if the robot controller has lost its pressure
-    Key(Key),     // a key of the panel, as soon as the controller accepts it
-    Rise,         // button D of the joystick box, until the robot is [`RISE`] higher or stops rising
-    Sink,         // button E, until the robot is almost back at the height at which it rose
-    Lead(Lead),   // stick and buttons, which move the robot along a path
-    Change(What), // a change of the parts in the cell
+    Enter,                   // ENTER, if the robot controller shows a warning
+    StartUp,                 // the start-up at the panel, if the robot controller has lost its pressure
+    Key(Key),                // a key of the panel, as soon as the controller accepts it
+    Rise,       // button D of the joystick box, until the robot is [`RISE`] higher or stops rising
+    Sink,       // button E, until the robot is almost back at the height at which it rose
+    Lead(Lead), // stick and buttons, which move the robot along a path
+    Change(DisturbanceKind), // a change of the parts in the cell
     Undo(Undo),
     Outage(Outage),
     Release, // `io go` to the devices that have tripped, until all are running
@@ -125,8 +125,8 @@ impl Script {
 
     /// Undoes a person's changes that caused the refusal of a command. `None` without changes.
     #[must_use]
-    pub fn undone(&self, what: &What) -> Option<Self> {
-        if let What::Jog(way) = what {
+    pub fn undone(&self, what: &DisturbanceKind) -> Option<Self> {
+        if let DisturbanceKind::Jog(way) = what {
             let lead = Lead::back(*way);
             return Some(Self::new(joystick(lead.knob(), [ScriptStep::Lead(lead), ScriptStep::Wait(25)])));
         }
@@ -216,7 +216,7 @@ impl Script {
                 ScriptStep::AirLost(ticks) => {
                     let from = branch.at().0 + 1;
                     let when = When { from, until: from + ticks, ..When::ALWAYS };
-                    let faults = vec![Fault { number: 1, what: fault::What::AirLost, when }];
+                    let faults = vec![Fault { number: 1, what: fault::DisturbanceKind::AirLost, when }];
                     let plan = FaultPlan { seed: 0, faults };
                     branch.closed.workstation.cell.add_faults(&plan, branch.facility().seed);
                 }

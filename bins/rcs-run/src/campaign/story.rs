@@ -10,7 +10,7 @@ use rcs_core::tick::Tick;
 use super::{branch::Branch, trial::Observer, verdict::BranchResult};
 
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Said {
+struct StatusLine {
     command: String,
     report: &'static str,
     decided: Option<Decided>,
@@ -23,7 +23,7 @@ pub struct Story {
     text: String,
     at: u64,
     around: u64,
-    last: Vec<Said>,
+    last: Vec<StatusLine>,
 }
 
 impl Story {
@@ -50,11 +50,11 @@ impl Story {
         head + "\n" + &self.text
     }
 
-    fn said(branch: &Branch<'_>) -> Vec<Said> {
+    fn said(branch: &Branch<'_>) -> Vec<StatusLine> {
         let (hws, memory) = (&branch.closed.external().hws, branch.memory());
         let said = |process: &ProcessId| {
             let (header, said) = (memory.header(*process), memory.said(*process));
-            Said {
+            StatusLine {
                 command: failure::command(*process, hws, memory),
                 report: said.report,
                 decided: header.decided,
@@ -75,7 +75,7 @@ impl Observer for Story {
         for (at, (said, process)) in now.iter().zip(Ladder::processes()).enumerate() {
             let before = self.last.get(at).cloned().unwrap_or_default();
             let row = before.decided != said.decided;
-            let rest = Said { decided: said.decided, ..before.clone() } != *said;
+            let rest = StatusLine { decided: said.decided, ..before.clone() } != *said;
             let idle = said.command.is_empty();
             if !(rest || row && near) || first && idle {
                 continue;

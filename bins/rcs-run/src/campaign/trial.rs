@@ -15,13 +15,13 @@ use rcs_core::{digest::Digest, name::Name16, tick::Tick};
 
 use super::{
     branch::{Branch, Facility},
-    disturbance::{Follow, What},
+    disturbance::{DisturbanceKind, Follow},
     harm::HarmMonitor,
     interruption::Kind,
     invariants::Invariants,
     known::{End, Known, Passed, Rest},
     motion::Motion,
-    operator::{Operator, Recovery, Then, Watching},
+    operator::{NextStep, Operator, Recovery, Watching},
     outage::{self, OutageMonitor},
     parent::Parent,
     script::Script,
@@ -242,7 +242,7 @@ impl Trial<'_, '_> {
         let before = self.operator.command_before().filter(|_| then == Some(Follow::Again));
         if let Some(command) = before {
             observer.say(at, &format!("the operator sends {command} again"));
-            return self.operator.interject(at, &command, Then::SameCommand);
+            return self.operator.interject(at, &command, NextStep::SameCommand);
         }
         if then == Some(Follow::Next) {
             self.operator.give_up();
@@ -255,7 +255,7 @@ impl Trial<'_, '_> {
     fn is_of_a_person(&self, over: bool) -> bool {
         match self.kind() {
             Kind::Nudge | Kind::Away => !over,
-            Kind::Disturbed(disturbance) => !over || !matches!(disturbance.what, What::Jog(_)),
+            Kind::Disturbed(disturbance) => !over || !matches!(disturbance.what, DisturbanceKind::Jog(_)),
             _ => false,
         }
     }
@@ -358,10 +358,10 @@ impl Trial<'_, '_> {
             Kind::Refused => {
                 let known = current.filter(|command| command.destination.is_some());
                 let known = known.unwrap_or_else(|| go("HOME"));
-                (HwsCommand { destination: Some(Name16::clipped(MISSPELT)), ..known }, Then::Recovery)
+                (HwsCommand { destination: Some(Name16::clipped(MISSPELT)), ..known }, NextStep::Recovery)
             }
-            Kind::Replaced => (go("HOME"), Then::SameCommand),
-            Kind::Pause if self.motion.is_some() => (pause(), Then::Nothing),
+            Kind::Replaced => (go("HOME"), NextStep::SameCommand),
+            Kind::Pause if self.motion.is_some() => (pause(), NextStep::Nothing),
             _ => return,
         };
         observer.say(at, &format!("the operator sends {command}"));

@@ -11,7 +11,7 @@ use taskdata::load::job::{Step, Workstation};
 
 use super::{
     branch::Facility,
-    disturbance::{Disturbance, Follow, What},
+    disturbance::{Disturbance, DisturbanceKind, Follow},
     interruption::Kind,
     parent::{Parent, Ticks},
     pool::Plan,
@@ -107,27 +107,27 @@ impl Draw {
         if few { of_job } else { all }.choose(&mut self.random).cloned()
     }
 
-    fn what(&mut self) -> Option<What> {
+    fn what(&mut self) -> Option<DisturbanceKind> {
         let part = self.random.random_range(1..=PARTS);
         Some(match self.random.random_range(0..8) {
             0..4 => {
                 let length = self.length(JOG);
-                What::Jog(self.vector(length))
+                DisturbanceKind::Jog(self.vector(length))
             }
-            4 => What::Take(part),
+            4 => DisturbanceKind::Take(part),
             5 => {
                 let length = self.length(MOVED);
                 let [x, y, _] = self.vector(length);
-                What::Move(part, [x, y])
+                DisturbanceKind::Move(part, [x, y])
             }
             6 => {
                 let kinds = self.choice.kinds.clone();
-                What::Swap(part, self.one_of(&kinds)?)
+                DisturbanceKind::Swap(part, self.one_of(&kinds)?)
             }
             _ => {
                 let places = self.choice.places.clone();
                 let (kind, location, sector) = self.one_of(&places)?;
-                What::Add(kind, location, sector)
+                DisturbanceKind::Add(kind, location, sector)
             }
         })
     }

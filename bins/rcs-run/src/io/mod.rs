@@ -61,9 +61,9 @@ impl Bench {
     }
 
     /// Sets up a session with a device. With [`Mode::Watch`] it writes no output.
-    pub fn probe(&self, index: usize, mode: Mode) -> Result<Probe, Hindrance> {
+    pub fn probe(&self, index: usize, mode: Mode) -> Result<Probe, Obstacle> {
         let device = &self.mapping.devices[index];
-        let text = |error: DeviceError| Hindrance::new(format!("{}: {error}", device.name));
+        let text = |error: DeviceError| Obstacle::new(format!("{}: {error}", device.name));
         let mut probe = Probe::new(device, mode).map_err(text)?;
         let limit = SET_UP + Duration::from_millis(device.plan.watchdog_ms.into());
         let begun = Instant::now();
@@ -78,7 +78,7 @@ impl Bench {
                 let why = runtime::field::hindrance(&self.mapping, index, report, now);
                 let text = why.unwrap_or_else(|| format!("{} is not ready", device.name));
                 let on = (report.refusal == Some(Refusal::OutputsOn)).then(|| Box::new(report.acknowledged));
-                return Err(Hindrance { text, on });
+                return Err(Obstacle { text, on });
             }
             thread::sleep(PERIOD);
         }
@@ -86,14 +86,14 @@ impl Bench {
 }
 
 #[derive(Debug)]
-pub struct Hindrance {
+pub struct Obstacle {
     /// A sentence with the device.
     pub text: String,
     /// The device's outputs, if some are on that must be off at rest.
     pub on: Option<Box<OutWords>>,
 }
 
-impl Hindrance {
+impl Obstacle {
     const fn new(text: String) -> Self {
         Self { text, on: None }
     }

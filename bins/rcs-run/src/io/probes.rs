@@ -10,7 +10,7 @@ use field::{InPoint, Mapping, Seen, Target};
 use interfaces::DeviceInputs;
 
 use super::{
-    Bench, Hindrance, PERIOD, Probe,
+    Bench, Obstacle, PERIOD, Probe,
     expected::{Work, work},
 };
 
@@ -38,7 +38,7 @@ impl Reading {
 
 impl Probes {
     /// Sets up sessions that write no output. Also returns why devices are not ready.
-    pub fn open(bench: &Bench) -> (Self, Vec<Option<Hindrance>>) {
+    pub fn open(bench: &Bench) -> (Self, Vec<Option<Obstacle>>) {
         let opened = (0..bench.mapping.devices.len()).map(|index| match bench.probe(index, Mode::Watch) {
             Ok(probe) => (Some(probe), None),
             Err(hindrance) => (None, Some(hindrance)),

@@ -5,7 +5,7 @@ use std::{process::ExitCode, time::Duration};
 use couplers::{Mode, State};
 use os_io::{console, stderr_line};
 
-use super::{Bench, Hindrance, Person};
+use super::{Bench, Obstacle, Person};
 use crate::rcs_run::{
     arguments::IoReleaseArguments,
     error::{Error, FAILED},
@@ -57,12 +57,12 @@ fn outputs_on(bench: &Bench, index: usize) -> Result<Vec<String>, String> {
             probe.end();
             Ok(Vec::new())
         }
-        Err(Hindrance { on: Some(outputs), .. }) => {
+        Err(Obstacle { on: Some(outputs), .. }) => {
             let named = bench.mapping.outputs_on(index, &outputs).map(|point| point.name.clone());
             let names: Vec<String> = named.collect();
             Ok(if names.is_empty() { vec!["outputs without a name".to_owned()] } else { names })
         }
-        Err(Hindrance { text, on: None }) => Err(text),
+        Err(Obstacle { text, on: None }) => Err(text),
     }
 }
 

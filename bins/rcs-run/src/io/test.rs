@@ -21,7 +21,7 @@ use interfaces::point;
 use os_io::stderr_line;
 
 use super::{
-    Bench, Hindrance, PERIOD, hold, outputs,
+    Bench, Obstacle, PERIOD, hold, outputs,
     person::Person,
     probes::Probes,
     tally::{DeviceTally, InputTally, Tally, Verdict},
@@ -137,7 +137,7 @@ fn devices(bench: &Bench, tally: &mut Tally) -> Probes {
             address: device.address.to_string(),
             identity: identity.unwrap_or_default(),
             verdict: if hindrance.is_some() { Verdict::NotReady } else { Verdict::Good },
-            hindrance: hindrance.map_or_else(String::new, |Hindrance { text, .. }| text),
+            hindrance: hindrance.map_or_else(String::new, |Obstacle { text, .. }| text),
             exchanges: 0,
             failures: 0,
             exchange_ms: [0.0; 3],

@@ -10,12 +10,12 @@ use super::size::Size;
 pub struct NewArguments {
     /// What is new
     #[command(subcommand)]
-    pub what: What,
+    pub what: NewItem,
 }
 
 /// What is new.
 #[derive(Clone, Debug, Subcommand)]
-pub enum What {
+pub enum NewItem {
     /// A part like an existing one, of another size: forms, movetables, entries of the cell and a job
     ///
     /// A box gets a program of the vise; a cylinder gets places in the nests of the part of --like. The data are tested

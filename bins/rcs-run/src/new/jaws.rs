@@ -22,7 +22,7 @@ const HIGHER: f64 = 0.6;
 const LOWEST: f64 = -0.30;
 
 /// Requirements of a part for a step, in.
-pub struct Wanted {
+pub struct StepNeeds {
     /// Height of the blank in the orientation in which it enters the vise.
     pub height: f64,
     /// Least height of the parts that are pushed to the back, if any.
@@ -52,7 +52,12 @@ pub struct Chosen {
 }
 
 /// The first step that fits: the step of the like part, another step, or a new step. The error has one line per step.
-pub fn choose(vise: &Vise, like: &ViseProgram, name: &str, wanted: &Wanted) -> Result<Chosen, Vec<String>> {
+pub fn choose(
+    vise: &Vise,
+    like: &ViseProgram,
+    name: &str,
+    wanted: &StepNeeds,
+) -> Result<Chosen, Vec<String>> {
     let others = vise.program.iter().filter(|other| other.name != like.name);
     let mut reasons: Vec<String> = Vec::new();
     for step in std::iter::once(like).chain(others) {
@@ -73,7 +78,7 @@ pub fn choose(vise: &Vise, like: &ViseProgram, name: &str, wanted: &Wanted) -> R
     }
 }
 
-impl Wanted {
+impl StepNeeds {
     /// The range for the back of a step whose ledge begins at `front`. Fails with a message if no back fits.
     fn backs(&self, front: f64) -> Result<[f64; 2], String> {
         let least = front + STANDS + NEAREST.min(self.behind) + self.height / 2.0;
@@ -197,8 +202,8 @@ mod tests {
     }
 
     /// The requirements of a clevis of another size.
-    fn clevis(height: f64, width: f64, length: f64) -> Wanted {
-        Wanted {
+    fn clevis(height: f64, width: f64, length: f64) -> StepNeeds {
+        StepNeeds {
             height,
             pushed: Some(height - 0.05),
             out: 0.13,
@@ -213,7 +218,7 @@ mod tests {
         }
     }
 
-    fn chosen(wanted: &Wanted) -> Result<Chosen, Vec<String>> {
+    fn chosen(wanted: &StepNeeds) -> Result<Chosen, Vec<String>> {
         let vise = vise();
         let like = vise.program.iter().find(|program| program.name == "CLEVIS").expect("it is there").clone();
         choose(&vise, &like, "NEW", wanted)
@@ -243,7 +248,7 @@ mod tests {
 
     #[test]
     fn part_without_a_step_is_refused_with_reasons() {
-        let why = |wanted: &Wanted| chosen(wanted).err().unwrap_or_default().join("\n");
+        let why = |wanted: &StepNeeds| chosen(wanted).err().unwrap_or_default().join("\n");
         assert!(why(&clevis(1.73, 3.5, 4.0)).contains("the jaws open for parts up to 3.00 in"));
         assert!(why(&clevis(1.73, 2.56, 1.0)).contains("comes 0.40 in above the jaws"));
         assert!(why(&clevis(1.0, 0.5, 3.0)).contains("in wide or wider, and this one has 0.500 in"));

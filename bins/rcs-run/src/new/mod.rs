@@ -28,7 +28,7 @@ use taskdata::load::Store;
 pub use arguments::NewArguments;
 
 use self::{
-    arguments::{PartArguments, PlaceArguments, ToolArguments, TrayArguments, What},
+    arguments::{NewItem, PartArguments, PlaceArguments, ToolArguments, TrayArguments},
     change::Change,
     part::Order,
     trial::Trial,
@@ -38,18 +38,18 @@ use crate::rcs_run::{arguments::CheckArguments, error::Error, pose, ways};
 /// Make new data. After an [`Error`], which has the reason, no file was written.
 pub fn new(arguments: &NewArguments) -> Result<ExitCode, Error> {
     match &arguments.what {
-        What::Part(arguments) => {
+        NewItem::Part(arguments) => {
             let PartArguments { name, size, like, write, explain_job, data } = arguments;
             let order = Order { name, like, tool: false, size: Some(*size), weight: None };
             part(&order, (*write, *explain_job), data)
         }
-        What::Tool(arguments) => {
+        NewItem::Tool(arguments) => {
             let ToolArguments { name, size, weight, like, write, explain_job, data } = arguments;
             let order = Order { name, like, tool: true, size: *size, weight: *weight };
             part(&order, (*write, *explain_job), data)
         }
-        What::Place(arguments) => place(arguments),
-        What::Tray(arguments) => tray(arguments),
+        NewItem::Place(arguments) => place(arguments),
+        NewItem::Tray(arguments) => tray(arguments),
     }
 }
 

@@ -21,7 +21,7 @@ use geometry::{
 use super::{
     change::Change,
     family::{Family, subject},
-    jaws::{Chosen, Wanted, choose},
+    jaws::{Chosen, StepNeeds, choose},
     numbers::{Numbers, Places},
 };
 use crate::rcs_run::error::Error;
@@ -79,7 +79,7 @@ impl<'a> Sizes<'a> {
         let pushed = pushed.filter_map(|(at, _)| parts.get(at)).map(|part| part.size[0]);
         let edge = cell.gripper.parts.fingers[2] / 2.0;
         let open = before.opening_open - old.size[1];
-        let wanted = Wanted {
+        let wanted = StepNeeds {
             height,
             pushed: pushed.reduce(f64::min),
             out: old.size[0] - before.back,
@@ -286,7 +286,7 @@ struct Rules<'a> {
     before: &'a ViseProgram,
 }
 
-struct Like {
+struct LikePart {
     behind: f64,          // distance before the back where the blank is released, in
     height: f64,          // height of the tool point above the lower end of a seated part, in
     in_hand: Option<f64>, // length of the lower end in the pedestal's hand, in
@@ -294,14 +294,14 @@ struct Like {
 
 impl Rules<'_> {
     /// Reads the like part's numbers, and the height of the fingertips above the floor, in.
-    fn read(&self) -> Result<(Like, f64), String> {
+    fn read(&self) -> Result<(LikePart, f64), String> {
         let last = self.family.parts.len().saturating_sub(1);
         let tips = -self.offset(Place::Tray, |part| part == 0).ok_or("no grip takes it from a tray")?[0];
         let brought = self.offset(Place::Vise, |part| part == 0).ok_or("no grip brings it into the vise")?;
         let seated = self.offset(Place::Vise, |part| part == last).ok_or("no grip takes it from the vise")?;
         let height = seated[2] - self.before.ledge;
         let in_hand = self.offset(Place::Pedestal, |_| true).map(|at| height - at[2]);
-        Ok((Like { behind: self.before.back - brought[0] - tips, height, in_hand }, tips))
+        Ok((LikePart { behind: self.before.back - brought[0] - tips, height, in_hand }, tips))
     }
 
     /// The offset of the first grip of a part at a kind of place, in.

@@ -8,7 +8,7 @@ use interfaces::{CommonMemory, DeviceInputs, DeviceOutputs, point::Kind};
 use rcs_core::{Plain as _, tick::Tick};
 
 use super::{
-    FieldEvent, Happened,
+    FieldChange, FieldEvent,
     hold::{FoundOutputs, Hold},
 };
 use crate::devices::StationLines;
@@ -23,7 +23,7 @@ struct Coupler {
 }
 
 #[derive(Clone, Debug)]
-pub struct Desk {
+pub struct FieldController {
     mapping: Arc<Mapping>,
     couplers: Vec<Coupler>,
     images: Vec<OutWords>, // images and inputs of the devices, kept so that a tick does not allocate
@@ -37,7 +37,7 @@ pub struct Desk {
 const OPERATOR: &str = "operator"; // name of the person who is asked, in events
 const WORKSTATION: &str = "workstation"; // name of the simulated devices, in events
 
-impl Desk {
+impl FieldController {
     /// Couplers that are being set up: nothing is written yet.
     #[must_use]
     pub fn new(mapping: Arc<Mapping>) -> Self {
@@ -160,7 +160,7 @@ impl Desk {
     pub fn release(&mut self, name: &str) -> bool {
         if self.is_safety_open() {
             let is_known = self.mapping.device(name).is_some();
-            let event = FieldEvent { device: name.to_owned(), what: Happened::Refused, held: Vec::new() };
+            let event = FieldEvent { device: name.to_owned(), what: FieldChange::Refused, held: Vec::new() };
             self.events.extend(is_known.then_some(event));
             return is_known;
         }
@@ -202,14 +202,14 @@ impl Desk {
             let running = self.couplers.iter_mut().filter(|coupler| coupler.orders.mode == Mode::Run);
             running.for_each(|coupler| coupler.orders.mode = Mode::Safe);
         }
-        let asks = self.lines.news().map(Happened::Asks);
+        let asks = self.lines.news().map(FieldChange::Asks);
         let held = Vec::new();
         self.events.extend(asks.map(|what| FieldEvent { device: OPERATOR.to_owned(), what, held }));
     }
 
     /// Notes a message of a simulated device of the workstation.
     pub(super) fn note_message(&mut self, text: String) {
-        let what = Happened::Message(text);
+        let what = FieldChange::Message(text);
         self.events.push(FieldEvent { device: WORKSTATION.to_owned(), what, held: Vec::new() });
     }
 
@@ -279,17 +279,20 @@ impl Desk {
             let what = match (coupler.state, report.state) {
                 (before, State::Ended(is_confirmed)) if before != report.state => {
                     let on = mapping.outputs_not_safe(index, &report.acknowledged);
-                    Some(Happened::Ended { is_confirmed, on: on.map(|point| point.name.clone()).collect() })
+                    Some(FieldChange::Ended {
+                        is_confirmed,
+                        on: on.map(|point| point.name.clone()).collect(),
+                    })
                 }
                 (_, State::Tripped(trip)) if !matches!(coupler.state, State::Tripped(_)) => {
-                    Some(Happened::Tripped(trip))
+                    Some(FieldChange::Tripped(trip))
                 }
-                (State::Tripped(_), State::Running) => Some(Happened::Released),
+                (State::Tripped(_), State::Running) => Some(FieldChange::Released),
                 (State::Running, State::Stale) => {
-                    Some(Happened::Stale(gap(report.read_at.unwrap_or_default())))
+                    Some(FieldChange::Stale(gap(report.read_at.unwrap_or_default())))
                 }
-                (State::Stale, State::Running) => Some(Happened::Back(gap(coupler.read_at))),
-                _ if report.counters.refused_releases != coupler.refused => Some(Happened::Refused),
+                (State::Stale, State::Running) => Some(FieldChange::Back(gap(coupler.read_at))),
+                _ if report.counters.refused_releases != coupler.refused => Some(FieldChange::Refused),
                 _ => None,
             };
             if report.state != State::Running || coupler.state == State::Running {
@@ -297,7 +300,7 @@ impl Desk {
             }
             (coupler.state, coupler.refused) = (report.state, report.counters.refused_releases);
             events.extend(what.map(|what| {
-                let is_stale = matches!(what, Happened::Stale(_));
+                let is_stale = matches!(what, FieldChange::Stale(_));
                 let held = if is_stale { readings(mapping, index, inputs) } else { Vec::new() };
                 FieldEvent { device: device.name.clone(), what, held }
             }));

@@ -7,12 +7,12 @@ use couplers::Trip;
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldEvent {
     pub device: String,
-    pub what: Happened,
+    pub what: FieldChange,
     pub held: Vec<(String, i64)>, // the readings of converters that a stale device keeps, by their points
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Happened {
+pub enum FieldChange {
     Stale(u32),    // the device has not answered for this time, ms
     Back(u32),     // the device answers again after this time, ms, and continues
     Tripped(Trip), // the outputs of the device are safe until an operator releases it
@@ -32,14 +32,14 @@ impl FieldEvent {
     #[must_use]
     pub const fn code(&self) -> &'static str {
         match &self.what {
-            Happened::Stale(_) => "io.stale",
-            Happened::Back(_) => "io.back",
-            Happened::Tripped(_) => "io.tripped",
-            Happened::Released => "io.released",
-            Happened::Refused => "io.refused",
-            Happened::Asks(_) => "io.asks",
-            Happened::Message(_) => "io.message",
-            Happened::Ended { .. } => "io.ended",
+            FieldChange::Stale(_) => "io.stale",
+            FieldChange::Back(_) => "io.back",
+            FieldChange::Tripped(_) => "io.tripped",
+            FieldChange::Released => "io.released",
+            FieldChange::Refused => "io.refused",
+            FieldChange::Asks(_) => "io.asks",
+            FieldChange::Message(_) => "io.message",
+            FieldChange::Ended { .. } => "io.ended",
         }
     }
 }
@@ -48,41 +48,41 @@ impl fmt::Display for FieldEvent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { device, what, held } = self;
         match what {
-            Happened::Stale(ms) => {
+            FieldChange::Stale(ms) => {
                 write!(f, "{device} has not answered for {ms} ms; its inputs keep their values")?;
                 for (index, (point, value)) in held.iter().enumerate() {
                     write!(f, "{} {point} {value}", if index == 0 { ":" } else { "," })?;
                 }
                 Ok(())
             }
-            Happened::Back(ms) => write!(f, "{device} answers again after {ms} ms"),
-            Happened::Tripped(Trip::Gap(ms)) => write!(
+            FieldChange::Back(ms) => write!(f, "{device} answers again after {ms} ms"),
+            FieldChange::Tripped(Trip::Gap(ms)) => write!(
                 f,
                 "{device} was not written for {ms} ms: its outputs are safe until an operator sends `io go {device}`"
             ),
-            Happened::Tripped(trip) => write!(
+            FieldChange::Tripped(trip) => write!(
                 f,
                 "{device} is tripped, since {}: its outputs are safe until an operator sends `io go {device}`",
                 cause(*trip)
             ),
-            Happened::Released => write!(f, "{device} is released"),
-            Happened::Refused => write!(
+            FieldChange::Released => write!(f, "{device} is released"),
+            FieldChange::Refused => write!(
                 f,
                 "{device} is not released: it does not answer, an output is on that may not be on at rest, or the \
                  safety circuit is open"
             ),
-            Happened::Asks(request) => write!(f, "the job waits until a person has done this: {request}"),
-            Happened::Message(text) => f.write_str(text),
-            Happened::Ended { is_confirmed: true, on } if on.is_empty() => {
+            FieldChange::Asks(request) => write!(f, "the job waits until a person has done this: {request}"),
+            FieldChange::Message(text) => f.write_str(text),
+            FieldChange::Ended { is_confirmed: true, on } if on.is_empty() => {
                 write!(f, "{device} has confirmed that its outputs are safe")
             }
-            Happened::Ended { is_confirmed: true, on } => write!(
+            FieldChange::Ended { is_confirmed: true, on } => write!(
                 f,
                 "{device} has confirmed that its outputs are safe, except {}, which may be on at rest and keep their \
                  values until its watchdog fires, if it has one",
                 on.join(", ")
             ),
-            Happened::Ended { is_confirmed: false, .. } => write!(
+            FieldChange::Ended { is_confirmed: false, .. } => write!(
                 f,
                 "{device} has not confirmed that its outputs are safe: its watchdog makes them so, if it has one"
             ),

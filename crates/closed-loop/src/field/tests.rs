@@ -224,7 +224,7 @@ fn end_makes_the_outputs_safe_and_says_whether_that_is_confirmed() {
     let confirmed: Vec<_> = events.iter().map(|event| (event.device.as_str(), event.what.clone())).collect();
     let ended = |is_confirmed, on: &[&str]| {
         let on = on.iter().map(|name| (*name).to_owned()).collect();
-        Happened::Ended { is_confirmed, on }
+        FieldChange::Ended { is_confirmed, on }
     };
     let expected = [
         ("arm", ended(true, &["tool.close"])),
@@ -286,7 +286,7 @@ fn open_safety_circuit_makes_all_outputs_safe() {
 
 /// A controller that has closed the tool gripper and supplies the parts gripper, and its devices, whose first output
 /// words are these.
-fn resumed(arm: u16, fixture: u16) -> (Desk, CommonMemory, [usize; 2]) {
+fn resumed(arm: u16, fixture: u16) -> (FieldController, CommonMemory, [usize; 2]) {
     let mapping = station().desk.mapping().clone();
     let [arm_at, fixture_at] = ["arm", "fixture"].map(|name| mapping.device(name).unwrap());
     let reports = |index| {
@@ -298,7 +298,7 @@ fn resumed(arm: u16, fixture: u16) -> (Desk, CommonMemory, [usize; 2]) {
         report
     };
     let count = mapping.devices.len();
-    let mut desk = Desk::new(Arc::new(mapping));
+    let mut desk = FieldController::new(Arc::new(mapping));
     desk.observe(0, (0..count).map(reports));
     desk.begin();
     let mut memory = CommonMemory::default();
@@ -311,7 +311,7 @@ const TOOL_CLOSE: u16 = 1 << 11; // bits of the first output word of the arm
 const SUPPLY: u16 = 1 << 7;
 const VISE_CLOSE: u16 = 1 << 2; // a bit of the first output word of the fixture
 
-fn closed_vise(desk: &Desk) -> Vec<i64> {
+fn closed_vise(desk: &FieldController) -> Vec<i64> {
     let close = |point: &field::OutPoint| i64::from(point.name == "vise.PFIXTURE.close");
     desk.mapping().outputs.iter().map(close).collect()
 }
@@ -323,7 +323,7 @@ fn outputs_that_may_be_on_and_were_set_are_kept_until_the_first_command() {
     let found = desk.adopt(&memory, &[vise]);
     assert_eq!(found.adopted, ["tool.close", "vise.PFIXTURE.close"]);
     assert_eq!((found.cleared, found.unknown), (vec!["grip.supply".to_owned()], Vec::new()));
-    let words = |desk: &mut Desk, memory: &CommonMemory| {
+    let words = |desk: &mut FieldController, memory: &CommonMemory| {
         desk.note_commands(memory);
         desk.order(Tick(8), &memory.device_outputs());
         let orders: Vec<u16> = desk.orders().map(|orders| orders.words.words[0]).collect();

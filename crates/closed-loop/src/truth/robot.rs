@@ -46,7 +46,7 @@ pub fn is_open(cell: &Cell, inches: f64) -> Result<(), Contradiction> {
     })
 }
 
-pub fn wears(cell: &Cell, id: u8) -> Result<(), Contradiction> {
+pub fn check_gripper_on(cell: &Cell, id: u8) -> Result<(), Contradiction> {
     match (cell.gripper(), cell.ring()) {
         (Some(on), RingState::Locked) if on == id => Ok(()),
         (Some(on), RingState::Locked) => {
@@ -59,7 +59,7 @@ pub fn wears(cell: &Cell, id: u8) -> Result<(), Contradiction> {
     }
 }
 
-pub fn wears_none(cell: &Cell, id: Option<u8>) -> Result<(), Contradiction> {
+pub fn check_no_gripper(cell: &Cell, id: Option<u8>) -> Result<(), Contradiction> {
     if let Some(on) = cell.gripper() {
         return Err(Contradiction::sensed(format!("gripper {on} is still on the robot")));
     }

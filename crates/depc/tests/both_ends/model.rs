@@ -15,7 +15,7 @@ use crate::image::Image;
 const RING: i16 = 4; // points
 /// The position of a point, except for the first word.
 const AT: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
-const PATIENCE: u16 = RESTART_TICKS + 5; // slightly more than a second; the real value only takes longer
+const SILENCE_TICKS: u16 = RESTART_TICKS + 5; // slightly more than a second; the real value only takes longer
 const LATE: [u8; 3] = [1, 2, 3]; // of a late frame
 
 pub type Wrong = &'static str;
@@ -203,7 +203,7 @@ pub struct State {
 impl State {
     pub fn first(setting: &Setting) -> Self {
         let mut host = Host::new(ANSWER_TICKS);
-        host.set_silence_limit(PATIENCE);
+        host.set_silence_limit(SILENCE_TICKS);
         Self {
             host,
             controller: Controller::new(Limits::NBS),

@@ -146,7 +146,7 @@ impl<'n, 'a> Reader<'n, 'a> {
         let text = self.value().and_then(DeValue::as_str);
         text.unwrap_or_else(|| {
             self.unfit("a text in quotes", &[]);
-            STAND_IN
+            PLACEHOLDER
         })
     }
 
@@ -207,7 +207,7 @@ impl<'n, 'a> Reader<'n, 'a> {
     }
 }
 
-const STAND_IN: &str = "?";
+const PLACEHOLDER: &str = "?";
 
 fn said(value: &DeValue<'_>) -> String {
     match value {
@@ -333,7 +333,7 @@ impl<'de> de::Deserializer<'de> for Reader<'_, 'de> {
             self.unfit(format_args!("one of {}", variants.join(", ")), variants);
             variants.first()
         });
-        visitor.visit_enum(StrDeserializer::new(word.copied().unwrap_or(STAND_IN)))
+        visitor.visit_enum(StrDeserializer::new(word.copied().unwrap_or(PLACEHOLDER)))
     }
 
     /// A whole number or a text.

@@ -37,7 +37,7 @@ pub const BOARD_0: &str = "board-0";
 /// Time that board 0 waits for a notification before it checks by itself.
 const LOOK: Duration = Duration::from_millis(10);
 /// Time between two checks for boards that have not joined yet.
-const GATHER: Duration = Duration::from_millis(20);
+const JOIN_PERIOD: Duration = Duration::from_millis(20);
 /// Number of checks after which board 0 tests whether a board that had joined is still alive.
 const LIFE: u32 = 25;
 /// Time limit for the boards to end by themselves when the run is over.
@@ -195,7 +195,7 @@ impl Coordinator {
                     heard(BoardEvent::Came { board, pid }, &self.boards_that(|seat| !seat.has_come()));
                 }
                 if look.is_multiple_of(LIFE)
-                    && let Some(event) = self.give_up_the_dead(at)
+                    && let Some(event) = self.drop_dead_members(at)
                 {
                     heard(event, &self.boards_that(|seat| !seat.has_come()));
                 }
@@ -214,7 +214,7 @@ impl Coordinator {
                 return Err(SplitError::Missing { missing, wait_limit });
             }
             if let Some((giver, _)) = &self.ports {
-                sleep(&giver.done, GATHER);
+                sleep(&giver.done, JOIN_PERIOD);
             }
         }
         self.seats.iter_mut().for_each(|seat| seat.former.clear());
@@ -258,14 +258,14 @@ impl Coordinator {
     }
 
     /// Before all boards have joined: if the process of a board has ended, another process can join as this board.
-    fn give_up_the_dead(&mut self, at: usize) -> Option<BoardEvent> {
+    fn drop_dead_members(&mut self, at: usize) -> Option<BoardEvent> {
         let seat = self.seats.get(at)?;
         let came = seat.child.is_none() && seat.ports.is_some();
         if !came || runs::has_living(&self.name, seat.board.name()) {
             return None;
         }
         let event = BoardEvent::Left { board: seat.board, pid: seat.report.pid };
-        self.vacate(at);
+        self.free_seat(at);
         Some(event)
     }
 
@@ -279,11 +279,11 @@ impl Coordinator {
         stop: &AtomicBool,
         heard: impl FnMut(BoardEvent, &[Board]),
     ) -> Result<(), SplitError> {
-        self.vacate(lost.board.index());
+        self.free_seat(lost.board.index());
         self.gather(wait_limit, stop, heard)
     }
 
-    fn vacate(&mut self, at: usize) {
+    fn free_seat(&mut self, at: usize) {
         let (Some((giver, _)), Some(seat)) = (&mut self.ports, self.seats.get_mut(at)) else { return };
         // Kept until the successor has read the last outputs to the devices from them.
         seat.former.extend(seat.ports.take());

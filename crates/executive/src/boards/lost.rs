@@ -43,7 +43,7 @@ fn list(boards: &[Board]) -> String {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum How {
+pub enum LossReason {
     Ended(ExitStatus),
     Left,
     Silent,
@@ -58,7 +58,7 @@ pub struct Lost {
     pub board: Board,
     pub pid: u32,
     pub tick: Tick,
-    pub how: How,
+    pub how: LossReason,
 }
 
 impl fmt::Display for Lost {
@@ -66,11 +66,11 @@ impl fmt::Display for Lost {
         let Self { board, pid, tick, how } = self;
         write!(f, "{board} ({}; process {pid}) ", board.process_names())?;
         match how {
-            How::Ended(status) => write!(f, "ended ({status})")?,
-            How::Left => f.write_str("left the run")?,
-            How::Silent => write!(f, "has not answered for {:.1} s", LOST_AFTER.as_secs_f64())?,
-            How::Garbled(error) => write!(f, "wrote an invalid record ({error})")?,
-            How::Unwritten => f.write_str("marked its outputs as written without writing them")?,
+            LossReason::Ended(status) => write!(f, "ended ({status})")?,
+            LossReason::Left => f.write_str("left the run")?,
+            LossReason::Silent => write!(f, "has not answered for {:.1} s", LOST_AFTER.as_secs_f64())?,
+            LossReason::Garbled(error) => write!(f, "wrote an invalid record ({error})")?,
+            LossReason::Unwritten => f.write_str("marked its outputs as written without writing them")?,
         }
         write!(f, " in tick {tick}")
     }

@@ -47,7 +47,7 @@ pub(crate) struct ArmText {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Hindrance {
+pub enum AxisProblem {
     OutOfReach,
     Limit {
         axis: usize, // index of the axis, from 0
@@ -61,7 +61,7 @@ pub enum Hindrance {
     },
 }
 
-impl fmt::Display for Hindrance {
+impl fmt::Display for AxisProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::OutOfReach => f.write_str("out of reach"),
@@ -191,17 +191,21 @@ impl Track {
     }
 
     /// Moves to the next pose within a time, s. On error, the arm keeps its axis angles.
-    pub fn go(&mut self, arm: &Arm, tool: &Pose, seconds: f64) -> Result<(), Hindrance> {
+    pub fn go(&mut self, arm: &Arm, tool: &Pose, seconds: f64) -> Result<(), AxisProblem> {
         let solutions = arm.kinematics.inverse_continuing(&arm.flange(tool), &self.axes);
-        let axes = *solutions.first().ok_or(Hindrance::OutOfReach)?;
+        let axes = *solutions.first().ok_or(AxisProblem::OutOfReach)?;
         let (axis, margin) = arm.margin(&axes);
         if margin < 0.0 {
-            return Err(Hindrance::Limit { axis, by: -margin });
+            return Err(AxisProblem::Limit { axis, by: -margin });
         }
         for (axis, (to, from)) in axes.iter().zip(self.axes).enumerate() {
             let (needed, most) = ((to - from).abs() / seconds, arm.speeds[axis]);
             if needed > most {
-                return Err(Hindrance::Speed { axis, needed: needed.to_degrees(), most: most.to_degrees() });
+                return Err(AxisProblem::Speed {
+                    axis,
+                    needed: needed.to_degrees(),
+                    most: most.to_degrees(),
+                });
             }
             self.speeds[axis] = self.speeds[axis].max(needed.to_degrees());
         }
@@ -269,10 +273,10 @@ mod tests {
             track.go(&arm, &arm.pose(&next), seconds)
         };
         assert_eq!(to(0, 0.05, 0.04), Ok(()));
-        assert!(matches!(to(0, 0.1, 0.04), Err(Hindrance::Speed { axis: 0, .. })));
-        assert!(matches!(to(4, 2.5, 10.0), Err(Hindrance::Limit { axis: 4, .. })));
+        assert!(matches!(to(0, 0.1, 0.04), Err(AxisProblem::Speed { axis: 0, .. })));
+        assert!(matches!(to(4, 2.5, 10.0), Err(AxisProblem::Limit { axis: 4, .. })));
         let far = Pose { position: [9e3; 3], ..Pose::IDENTITY };
-        assert_eq!(track.go(&arm, &far, 1.0), Err(Hindrance::OutOfReach));
+        assert_eq!(track.go(&arm, &far, 1.0), Err(AxisProblem::OutOfReach));
         assert!((track.speeds[0] - 0.05_f64.to_degrees() / 0.04).abs() < 1e-6, "{:?}", track.speeds);
     }
 

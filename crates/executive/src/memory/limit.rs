@@ -16,12 +16,12 @@ use super::{error::SharedMemoryError, place::root};
 pub const SET_UP_LIMIT: Duration = Duration::from_secs(20);
 
 /// Called with the limit, on another thread. It should end the process: the other call does not return.
-pub type OnStuck = fn(Duration);
+pub type OnTimeout = fn(Duration);
 
 /// Run `work`; after `limit`, if any, `on_stuck` is called. A panic becomes [`SharedMemoryError::Damaged`].
 pub fn within_limit<T, E: From<SharedMemoryError>>(
     limit: Duration,
-    on_stuck: Option<OnStuck>,
+    on_stuck: Option<OnTimeout>,
     work: impl FnOnce() -> Result<T, E>,
 ) -> Result<T, E> {
     // Data that a panic leaves incomplete belong to `work`, and are dropped with it.

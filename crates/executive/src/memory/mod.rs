@@ -26,7 +26,7 @@ mod text;
 pub use announced::{Announced, phase, starting};
 pub use attach::{Attached, ReadError};
 pub use error::SharedMemoryError;
-pub use limit::{OnStuck, SET_UP_LIMIT, within_limit};
+pub use limit::{OnTimeout, SET_UP_LIMIT, within_limit};
 pub use mirror::Mirror;
 pub use name::{NameError, RunName};
 pub(crate) use place::{have_room, reserve};

@@ -76,7 +76,7 @@ pub struct SerialLine {
     opened: Receiver<Port>,
 }
 
-struct Gone;
+struct PortLost;
 
 impl SerialLine {
     /// Open a port. The thread that keeps it open has the caller's priority: open it before the real-time requests.
@@ -114,7 +114,7 @@ impl SerialLine {
         let before = rx.length;
         let ready = match self.port.as_mut().map(|port| port.receive(rx)) {
             Some(Ok(ready)) => ready && !std::mem::take(&mut self.cut),
-            Some(Err(Gone)) => {
+            Some(Err(PortLost)) => {
                 self.lose();
                 false
             }
@@ -139,7 +139,7 @@ impl SerialLine {
         }
         let taken = match self.port.as_mut().map(|port| port.send(bytes)) {
             Some(Ok(taken)) => taken,
-            Some(Err(Gone)) => {
+            Some(Err(PortLost)) => {
                 self.lose();
                 0
             }
@@ -257,30 +257,30 @@ impl Port {
         !self.modem || self.lines.read_clear_to_send().unwrap_or(false)
     }
 
-    fn receive(&mut self, rx: &mut LinkBytes) -> Result<bool, Gone> {
+    fn receive(&mut self, rx: &mut LinkBytes) -> Result<bool, PortLost> {
         let room = rx.bytes.get_mut(usize::from(rx.length)..).unwrap_or_default();
         // A read that finds nothing waits for the kernel's worker, up to half a second on a busy machine. Bytes that
         // the worker has not delivered have not arrived.
-        let arrived = ioctl_fionread(&self.bytes).map_err(|_| Gone)?;
+        let arrived = ioctl_fionread(&self.bytes).map_err(|_| PortLost)?;
         if arrived > 0 && !room.is_empty() {
             match self.bytes.read(room) {
-                Ok(0) => return Err(Gone),
+                Ok(0) => return Err(PortLost),
                 Ok(count) => rx.length += u8::try_from(count).unwrap_or_default(),
                 Err(error) if waits(error.kind()) => {}
-                Err(_) => return Err(Gone),
+                Err(_) => return Err(PortLost),
             }
         }
-        if self.modem { self.lines.read_clear_to_send().map_err(|_| Gone) } else { Ok(true) }
+        if self.modem { self.lines.read_clear_to_send().map_err(|_| PortLost) } else { Ok(true) }
     }
 
-    fn send(&mut self, bytes: &[u8]) -> Result<usize, Gone> {
+    fn send(&mut self, bytes: &[u8]) -> Result<usize, PortLost> {
         let taken = match self.bytes.write(bytes) {
             Ok(count) => count,
             Err(error) if waits(error.kind()) => 0,
-            Err(_) => return Err(Gone),
+            Err(_) => return Err(PortLost),
         };
         if taken < bytes.len() {
-            self.lines.clear(ClearBuffer::Output).map_err(|_| Gone)?;
+            self.lines.clear(ClearBuffer::Output).map_err(|_| PortLost)?;
         }
         Ok(taken)
     }

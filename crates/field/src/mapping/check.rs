@@ -8,7 +8,7 @@ mod spans;
 
 use diagnostics::{
     Problem, Problems,
-    toml::{StandIns, join},
+    toml::{Defaulted, join},
 };
 
 use self::{devices::Devices, spans::Taken};
@@ -23,7 +23,7 @@ fn says(path: &str, message: impl std::fmt::Display) -> Problem {
 }
 
 /// The mapping of a file, and its errors. The problems of entries with stand-ins are already reported.
-pub(super) fn build(sheet: &Sheet, stand_ins: &StandIns, problems: &mut Problems) -> Mapping {
+pub(super) fn build(sheet: &Sheet, stand_ins: &Defaulted, problems: &mut Problems) -> Mapping {
     if sheet.form != FORM && stand_ins.trusts("form") {
         problems.add(unlike("form", format_args!("{FORM}, which this version reads"), sheet.form));
     }

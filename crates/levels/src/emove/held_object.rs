@@ -22,7 +22,7 @@ use super::{
 use crate::execution::{Execution, Outcome};
 
 /// Ticks without contact of a held object (0.2 s). A part needs less time from one finger to the other.
-const UNFELT_TICKS: u8 = 5;
+const ABSENT_TICKS: u8 = 5;
 /// Least opening that releases an unknown object, 0.01 in (ASSUMED).
 const LEAST_RELEASE: i32 = 50;
 
@@ -253,7 +253,7 @@ impl HeldObject {
                 .opening(memory)
                 .is_some_and(|opening| !gripper.still_grips(opening, held.grasp_size, held.opening));
         let gone = EmoveGripper::attached(memory) != gripper;
-        let unfelt = self.unfelt > UNFELT_TICKS;
+        let unfelt = self.unfelt > ABSENT_TICKS;
         let has_released = grippers.has_released(inputs.tick, memory);
         if slipped || unfelt || gone || has_released {
             (self.held, self.grasping, self.gripper_gone) = (None, None, gone);
@@ -303,7 +303,7 @@ impl HeldObject {
             Some(opening) => gripper.grips(opening, grasp_size),
             None => self.held.is_some(),
         };
-        if gripping && !self.is_half_let_go(at_place, grippers, inputs) {
+        if gripping && !self.is_partly_released(at_place, grippers, inputs) {
             Fingers::Gripping
         } else {
             Fingers::Empty
@@ -311,7 +311,7 @@ impl HeldObject {
     }
 
     /// True if a held object is being released, or fingers at rest neither detect nor press it.
-    fn is_half_let_go(&self, at_place: bool, grippers: &Grippers, inputs: &EmoveInputs<'_>) -> bool {
+    fn is_partly_released(&self, at_place: bool, grippers: &Grippers, inputs: &EmoveInputs<'_>) -> bool {
         let Some(held) = self.held else { return false };
         let (gripper, memory) = (EmoveGripper::of(held.gripper), inputs.memory);
         let around = gripper.felt(memory) != Felt::Nothing && gripper.presses(memory);

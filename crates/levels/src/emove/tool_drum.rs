@@ -29,7 +29,7 @@ use super::{
     robot_place::{base, commanded_pose, is_moved_by_hand, near, present_frame, robot_at},
     tables::{
         AtDrum, Bias,
-        drum::{AtTheDrum, Belief, EmoveTool, drum},
+        drum::{AtTheDrum, DrumDecision, EmoveTool, drum},
         number,
     },
 };
@@ -243,13 +243,13 @@ impl ToolDrum {
         let decision = drum((), &situation);
         execution.rows.beside(&decision.of(number::DRUM));
         match decision.action {
-            Belief::Keep => None,
-            Belief::Leave if is_moved_by_hand(inputs.memory) => None,
-            Belief::Leave => {
+            DrumDecision::Keep => None,
+            DrumDecision::Leave if is_moved_by_hand(inputs.memory) => None,
+            DrumDecision::Leave => {
                 self.half_way = None;
                 None
             }
-            Belief::Stand => {
+            DrumDecision::Stand => {
                 let pose = commanded_pose(inputs.memory).unwrap_or_else(|| Pose::from_frame(&present));
                 self.half_way = None;
                 Some(RobotPlace { pose, ..half_way })

@@ -3,7 +3,7 @@
 //! A part is between the fingers if both strain gages read a force and the fingers are above the closed end of travel.
 //! At the closed end the fingers press on each other and also read a force. The fingers are empty if neither gage reads
 //! a force. Contact of one finger alone is not enough: a part held with little force may touch only one of them. A
-//! value is valid after `FELT_TICKS`.
+//! value is valid after `PRESENCE_TICKS`.
 
 use interfaces::{
     device::{ADC_FULL_SCALE, GripSensors},
@@ -24,7 +24,7 @@ use super::{
 pub(super) const CONTACT: f64 = 1.0; // lb
 pub(super) const MISSED_AT_END: f64 = 0.02; // in above the closed opening: no smaller opening exists
 /// 0.2 s, longer than it takes to push a part from one finger to the other.
-pub(super) const FELT_TICKS: u8 = 5;
+pub(super) const PRESENCE_TICKS: u8 = 5;
 const STILL_COUNTS: u16 = 6; // above the noise, below a fine flow
 const BEYOND: f64 = 0.15; // in; an opening farther beyond an end of travel is a sensor failure
 const LEAST_PLAUSIBLE_FORCE: f64 = -5.0; // lb; a smaller reading is a sensor failure
@@ -47,7 +47,7 @@ impl State {
         let contact = GripContact {
             readings: if is_valid { Validity::Valid } else { Validity::Invalid },
             touch,
-            period: if self.touch_ticks >= FELT_TICKS { Period::Long } else { Period::Short },
+            period: if self.touch_ticks >= PRESENCE_TICKS { Period::Long } else { Period::Short },
         };
         let decision = presence(self.felt, &contact);
         self.felt = decision.next;
@@ -59,7 +59,7 @@ impl State {
 
     /// Notes that the fingers are empty: the calibration has opened them and read no force.
     pub(super) fn set_empty(&mut self) {
-        (self.felt, self.touch, self.touch_ticks) = (Felt::Nothing, Touch::Free, FELT_TICKS);
+        (self.felt, self.touch, self.touch_ticks) = (Felt::Nothing, Touch::Free, PRESENCE_TICKS);
     }
 }
 

@@ -19,7 +19,7 @@ use super::{
     pedestal_hand::pedestal_hand,
     tables::{
         PedestalData, SubtaskPedestal,
-        by_hand::{HeldByHand, ManualOrder, Manually, Refused, Regripping, RobotThere, by_hand},
+        by_hand::{HeldByHand, ManualOrder, Manually, Refused, Regripping, RobotAtPedestal, by_hand},
     },
 };
 use crate::{emove::robot_place::present_frame, places::named};
@@ -101,19 +101,21 @@ pub(super) fn command(order: &HandOrder, regrip: Option<&Name16>, data: &TaskDat
 fn para<'d>(object: Option<&Name16>, data: &TaskData<'d>) -> Option<&'d PedPara> {
     object.and_then(|object| data.ped_para(object)).map(|(_, para)| para)
 }
-pub(super) fn robot_there(memory: &CommonMemory, data: &TaskData<'_>) -> RobotThere {
+pub(super) fn robot_there(memory: &CommonMemory, data: &TaskData<'_>) -> RobotAtPedestal {
     let emove = &memory.emove.status;
     if is_clear(emove, memory, data) {
-        return RobotThere::Clear;
+        return RobotAtPedestal::Clear;
     }
     let regrip = memory.subtask.regrip.map(|regrip| regrip.object);
     let at_object =
         emove.at.is_some_and(|at| at.site.location.as_str() == named::PEDESTAL && at.grip.is_some());
     match emove.held {
         Holding::Object(held) if at_object && regrip.is_none_or(|part| part == held.object) => {
-            RobotThere::Grips
+            RobotAtPedestal::Grips
         }
-        Holding::Object(_) | Holding::Nothing | Holding::Something | Holding::NotKnown => RobotThere::Near,
+        Holding::Object(_) | Holding::Nothing | Holding::Something | Holding::NotKnown => {
+            RobotAtPedestal::Near
+        }
     }
 }
 

@@ -18,7 +18,7 @@ use super::{
     tables::{
         GripHeld, Interlock, Leaving, Named, PedestalData, Request, Situation, StateVariables, Subordinates,
         SubtaskDrum, SubtaskExchange, SubtaskGripper, SubtaskPedestal, SubtaskRecipient, SubtaskRobot,
-        SubtaskVision, Where, by_hand::RobotThere,
+        SubtaskVision, Where, by_hand::RobotAtPedestal,
     },
 };
 use crate::{
@@ -232,8 +232,8 @@ fn robot(emove: &EmoveStatus, aims: &Aims) -> SubtaskRobot {
 fn leaving(inputs: &Inputs<'_, TaskData<'_>>) -> Leaving {
     let is_empty = inputs.memory.emove.status.held == Holding::Nothing;
     match robot_there(inputs.memory, inputs.data) {
-        RobotThere::Clear if is_empty => Leaving::Empty,
-        RobotThere::Clear | RobotThere::Near | RobotThere::Grips => Leaving::Bound,
+        RobotAtPedestal::Clear if is_empty => Leaving::Empty,
+        RobotAtPedestal::Clear | RobotAtPedestal::Near | RobotAtPedestal::Grips => Leaving::Bound,
     }
 }
 

@@ -64,7 +64,7 @@ pub trait Scene: Clone {
 
     const LONG: u64;
     /// Events that can happen to the processes.
-    const MISHAPS: &'static [DeliveryFault] = DeliveryFault::RESTARTS;
+    const DELIVERY_FAULTS: &'static [DeliveryFault] = DeliveryFault::RESTARTS;
     /// A command can arrive in the tick of a mishap.
     const COMMANDS_IN_MISHAPS: bool = false;
 
@@ -170,7 +170,7 @@ impl<S: Scene> World for Pair<S> {
 
     fn events(&self) -> Vec<(Self::Event, bool)> {
         let (choices, mut events) = (S::choices(self), Vec::new());
-        for mishap in DeliveryFault::choices(self.mishaps, S::MISHAPS) {
+        for mishap in DeliveryFault::choices(self.mishaps, S::DELIVERY_FAULTS) {
             for told in self.told() {
                 for &Choice { does, prompt, mishaps, short, long, quiet: only_quiet } in &choices {
                     let mishaps = mishaps + u8::from(mishap != DeliveryFault::None);

@@ -20,7 +20,7 @@ pub const SEAT: f64 = 1.5;
 /// The robot is clear of the holster above this, in the axes of the holster, in.
 const CLEAR: f64 = -2.9;
 /// A robot this far aside is not in the holster but elsewhere, in.
-const BESIDE: f64 = 0.25;
+const ELSEWHERE_INCHES: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ring {
@@ -89,7 +89,7 @@ pub fn judge_done(
     (mated, ring): (bool, Ring),
 ) -> Result<(), Wrong> {
     let at = holster().inverse().compose(robot).position;
-    let clear = at.x < CLEAR || at.y.abs() > BESIDE;
+    let clear = at.x < CLEAR || at.y.abs() > ELSEWHERE_INCHES;
     match command.command {
         EmoveVerb::QcAttach if !mated => Err("done, and the gripper is not on"),
         EmoveVerb::QcAttach if ring != Ring::Locked => Err("done, and the ring is not locked"),

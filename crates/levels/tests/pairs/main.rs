@@ -105,7 +105,8 @@ const HANDLING: &[&str] = &[
     "ACQUIRE LINKBAR1 +2 PFIXTURE 0 +0 -- 0 -- 0",
 ];
 /// Commands that need the Data System.
-const TELLING: &[&str] = &["PAUSE", "STARTUP", "POSITION LINKBAR1 +2 PFIXTURE 0 +0 -- 0 -- 0", "SHUTDOWN"];
+const DATA_SYSTEM_COMMANDS: &[&str] =
+    &["PAUSE", "STARTUP", "POSITION LINKBAR1 +2 PFIXTURE 0 +0 -- 0 -- 0", "SHUTDOWN"];
 
 /// Search Task and Subtask with these commands; a resting pair takes `any` ticks at most.
 fn tasks(name: &str, mishaps: u8, lines: &[&str], any: u32) {
@@ -122,12 +123,12 @@ fn task_and_subtask_handle_an_object() {
 #[test]
 fn task_and_subtask_update_the_data_system() {
     let some = if is_full() { 4 } else { 3 };
-    tasks("Task and Subtask, the Data System", 0, &TELLING[..some], 23);
+    tasks("Task and Subtask, the Data System", 0, &DATA_SYSTEM_COMMANDS[..some], 23);
 }
 
 /// Ticks to the end of a TRANSFER that first reports where the replaced command has left an object, and then the
 /// place of its own.
-const TELLING_TWICE: u32 = 32;
+const TWO_UPDATES_TICKS: u32 = 32;
 
 #[test]
 fn task_and_subtask_release_an_object() {
@@ -135,7 +136,7 @@ fn task_and_subtask_release_an_object() {
     commands.truncate(if is_full() { 3 } else { 2 });
     let pair = task::first(0, commands.clone()).carrying(&commands[1]);
     let found = is_sound("Task and Subtask, an object in the database", pair, 4_000_000);
-    assert!(found.pause <= 14 && found.any <= TELLING_TWICE, "{} and {}", found.pause, found.any);
+    assert!(found.pause <= 14 && found.any <= TWO_UPDATES_TICKS, "{} and {}", found.pause, found.any);
 }
 
 #[test]
@@ -145,7 +146,7 @@ fn task_and_subtask_take_an_object_out_of_the_mbd() {
     commands.truncate(if is_full() { 3 } else { 2 });
     let pair = task::first(0, commands).connected("UNIT_1").promptly(!is_full());
     let found = is_sound("Task and Subtask, an object taken out of the MBD", pair, 4_000_000);
-    assert!(found.pause <= 14 && found.any <= TELLING_TWICE, "{} and {}", found.pause, found.any);
+    assert!(found.pause <= 14 && found.any <= TWO_UPDATES_TICKS, "{} and {}", found.pause, found.any);
 }
 
 #[test]

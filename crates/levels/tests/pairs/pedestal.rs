@@ -153,7 +153,7 @@ impl Scene for Around {
     type Does = (HandDoes, MotorDoes);
     /// Longer than the time limit of the table's commands.
     const LONG: u64 = 2000;
-    const MISHAPS: &'static [DeliveryFault] =
+    const DELIVERY_FAULTS: &'static [DeliveryFault] =
         &[DeliveryFault::RestartUpper, DeliveryFault::RestartLower, DeliveryFault::Slip];
 
     fn choices(pair: &Pair) -> Vec<Choice<Self::Does>> {

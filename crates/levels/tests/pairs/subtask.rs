@@ -103,7 +103,7 @@ impl Scene for Around {
     type Command = SubtaskCommand;
     type Does = Does;
     const LONG: u64 = 2 * LIMIT;
-    const MISHAPS: &'static [DeliveryFault] =
+    const DELIVERY_FAULTS: &'static [DeliveryFault] =
         &[DeliveryFault::RestartUpper, DeliveryFault::RestartLower, DeliveryFault::SilentLower];
 
     fn choices(pair: &Pair) -> Vec<Choice<Does>> {

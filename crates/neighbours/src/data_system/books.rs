@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, convert::Infallible};
 
-use super::records::{Item, Records, Said};
+use super::records::{Item, LastStatement, Records};
 
 #[derive(Clone, Debug, Default)]
 struct Client {
@@ -29,7 +29,7 @@ impl Records for Books {
         Ok(())
     }
 
-    fn report(&mut self, client: &str, said: Said<'_>, item: &Item) -> Result<bool, Infallible> {
+    fn report(&mut self, client: &str, said: LastStatement<'_>, item: &Item) -> Result<bool, Infallible> {
         if said.number != 0 {
             let last = &mut self.clients.entry(client.to_owned()).or_default().last;
             let (number, statement) = last;

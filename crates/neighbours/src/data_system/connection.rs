@@ -1,4 +1,4 @@
-//! The controller's end of the Data System: mailboxes, the handshake with Task, and a [`Keeper`] for the commands.
+//! The controller's end of the Data System: mailboxes, the handshake with Task, and a [`ItemStore`] for the commands.
 
 use std::fmt::Debug;
 
@@ -19,7 +19,7 @@ use crate::mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox, MailboxEr
 
 pub const ANSWER_TICKS: u64 = 25; // 1 s
 
-pub trait Keeper {
+pub trait ItemStore {
     fn execute(&mut self, id: u16, bytes: &[u8]) -> bool;
 
     fn reply(&mut self, id: u16) -> Reply;
@@ -41,7 +41,7 @@ pub struct InMemory {
     answer: Option<Answer>,
 }
 
-impl Keeper for InMemory {
+impl ItemStore for InMemory {
     fn execute(&mut self, _: u16, bytes: &[u8]) -> bool {
         self.answer = Some(self.server.execute(bytes));
         true
@@ -88,7 +88,7 @@ impl DataSystem {
     }
 }
 
-impl<K: Keeper> DataSystem<K> {
+impl<K: ItemStore> DataSystem<K> {
     #[must_use]
     pub fn new(keeper: K, answer_ticks: u64) -> Self {
         Self {

@@ -7,7 +7,7 @@
 //!   DataBaseStatus  <--status::decode--     14 bytes     <--Server--  result
 //! ```
 //!
-//! [`DataSystem`] is the controller's end, with a [`Keeper`] that executes commands. The server accepts only valid
+//! [`DataSystem`] is the controller's end, with a [`ItemStore`] that executes commands. The server accepts only valid
 //! bytes, a valid statement, and the steps of a connection in order. Items are kept in memory ([`Books`]), or in the
 //! database of the crate `sessions`, which also has keepers on a thread and in another process.
 
@@ -20,6 +20,6 @@ pub mod statement;
 pub mod status;
 
 pub use books::Books;
-pub use connection::{ANSWER_TICKS, DataSystem, InMemory, Keeper, Reply};
-pub use records::{Item, Records, Said};
+pub use connection::{ANSWER_TICKS, DataSystem, InMemory, ItemStore, Reply};
+pub use records::{Item, LastStatement, Records};
 pub use server::{Answer, Server};

@@ -13,7 +13,7 @@ pub struct Item {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Said<'a> {
+pub struct LastStatement<'a> {
     pub number: u16, // trans-id#; 0: none
     pub statement: &'a str,
 }
@@ -29,7 +29,7 @@ pub trait Records {
 
     /// Stores a position reported by a client; true if it is new. A statement with a number other than 0 is executed
     /// only once, even if other clients have reported meanwhile. After an error the records are unchanged.
-    fn report(&mut self, client: &str, said: Said<'_>, item: &Item) -> Result<bool, Self::Error>;
+    fn report(&mut self, client: &str, said: LastStatement<'_>, item: &Item) -> Result<bool, Self::Error>;
 
     fn items(&self) -> Result<Vec<Item>, Self::Error>; // sorted by name and number
 }

@@ -12,7 +12,7 @@
 use super::{
     books::Books,
     command::{self, Transaction},
-    records::{Item, Records, Said},
+    records::{Item, LastStatement, Records},
     statement::{self, Column, Update},
     status::{Refusal, ServerStatus, Status, Summary},
 };
@@ -99,7 +99,7 @@ impl<R: Records> Server<R> {
         let update =
             statement::parse(received.statement).map_err(|error| (Refusal::Statement, error.to_string()))?;
         let item = item(&update).map_err(|why| (Refusal::Value, why))?;
-        let said = Said { number: received.transaction_id, statement: received.statement };
+        let said = LastStatement { number: received.transaction_id, statement: received.statement };
         self.records
             .report(received.client, said, &item)
             .map_err(|error| (Refusal::Store, error.to_string()))?;

@@ -39,7 +39,7 @@ use crate::{
 };
 
 /// Command number for hand and table of a replacement pedestal. They have not executed the present command.
-const OF_THE_LAST_ONE: u32 = 1;
+const FIRST_COMMAND: u32 = 1;
 
 pub struct System {
     pedestal: Pedestal,
@@ -140,8 +140,8 @@ impl System {
         state.execution.wake();
         Process::<()>::restore(&mut self.pedestal, state);
         if number != 0 && self.tick == Tick::BEFORE_START {
-            self.memory.pedestal.hand = GripCommand { number: OF_THE_LAST_ONE, ..GripCommand::default() };
-            self.memory.pedestal.table = TableCommand { number: OF_THE_LAST_ONE, ..TableCommand::default() };
+            self.memory.pedestal.hand = GripCommand { number: FIRST_COMMAND, ..GripCommand::default() };
+            self.memory.pedestal.table = TableCommand { number: FIRST_COMMAND, ..TableCommand::default() };
         }
     }
 

@@ -37,7 +37,7 @@ use rcs_core::{
 };
 use taskdata::load::job::{JobLine, Step, Workstation as Action};
 
-use self::{operator::Intervention, step::Later};
+use self::{operator::Intervention, step::DelayedAction};
 pub use self::{
     operator::{OperatorError, PlaceInJob, WaitReason},
     outcome::{BegunStep, JobFailure, Outcome, Progress, Retry},
@@ -86,7 +86,7 @@ pub struct Hwsc {
     failed: Vec<FailedCommand>, // while the job continued
     progress: Progress,
     time_limit: u64,
-    later: Vec<Later>,
+    later: Vec<DelayedAction>,
     retries: u32,  // per line, at most
     tried: u32,    // of the current line so far
     pausing: bool, // before the current step, or before its retry

@@ -5,7 +5,7 @@ use std::fmt;
 use depc::controller::{JointProblem, Warning};
 use serde::{Deserialize, Serialize};
 
-use super::Droop;
+use super::SagReport;
 use crate::{
     clearance::Contact,
     description::DescriptionError,
@@ -55,7 +55,7 @@ pub enum CellEvent {
         part: String,
     },
     Warning(#[serde(with = "crate::image::record")] Warning),
-    Sagged(Droop),
+    Sagged(SagReport),
     Lamps(Lamps),
     Robot(RobotEvent),
     /// The simulated arm cannot reach the position of the robot that it follows, and does not move.

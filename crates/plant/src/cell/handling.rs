@@ -27,7 +27,7 @@ const JAW_WAIT_LIMIT: u32 = 50; // ticks after which the vise reports a jaw that
 /// Greatest penetration of a part into a clamping face at which it is still between the jaws, m.
 const OUTSIDE: Real = 2e-3;
 /// A part is also in a step of the jaws if it covers this fraction of the largest area that it covers in any step.
-const WELL: Real = 0.25;
+const LEAST_SHARE: Real = 0.25;
 /// Stiffness of the springs between fingers and part: a bar sags by only 0.01 mm, and friction does not jolt it.
 const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
 
@@ -101,7 +101,7 @@ impl Cell {
             || hand.others().any(|other| self.is_held_by(other, index))
     }
 
-    pub(super) fn is_had(&self, index: usize) -> bool {
+    pub(super) fn is_held_or_clamped(&self, index: usize) -> bool {
         self.is_clamped(index)
             || self.is_in_drum(index)
             || HANDS.iter().any(|hand| self.is_held_by(*hand, index))
@@ -212,7 +212,7 @@ impl Cell {
                 .filter_map(|step| Some((step, self.between_jaws_of(index, step)?)))
                 .collect();
             let most = offers.iter().map(|(_, squeeze)| squeeze.area).fold(0.0, f64::max);
-            let covered = offers.into_iter().filter(|(_, squeeze)| squeeze.area >= WELL * most);
+            let covered = offers.into_iter().filter(|(_, squeeze)| squeeze.area >= LEAST_SHARE * most);
             let depth = |step: usize| self.vise.depth(step);
             let (step, squeeze) = covered.min_by(|(a, _), (b, _)| depth(*a).total_cmp(&depth(*b)))?;
             let (face, far) = (self.vise.fixed_face(step), self.vise.movable_face(step));
@@ -277,7 +277,7 @@ impl Cell {
         squeeze(&base.inv_mul(&part.pose(&self.world)), &part.solid(), &self.vise.pads(step))
     }
 
-    pub(super) fn rub_holds(&mut self, dt: f64) {
+    pub(super) fn apply_hold_friction(&mut self, dt: f64) {
         for hand in HANDS {
             let (gripper, world) = self.hand_at_work(hand);
             if let Some((_, hold)) = &mut gripper.hold {
@@ -287,14 +287,14 @@ impl Cell {
     }
 
     /// After a time step: holds whose load exceeds friction slide.
-    pub(super) fn let_holds_give_way(&mut self) {
+    pub(super) fn slide_overloaded_holds(&mut self) {
         self.resist_in_vise();
         for hand in HANDS {
-            self.let_hold_give_way(hand);
+            self.slide_overloaded_hold(hand);
         }
     }
 
-    fn let_hold_give_way(&mut self, hand: Hand) {
+    fn slide_overloaded_hold(&mut self, hand: Hand) {
         let clamped = self.vise.clamped.map(|clamped| clamped.part);
         let (gripper, world) = self.hand_at_work(hand);
         let Some((index, hold)) = &mut gripper.hold else { return };

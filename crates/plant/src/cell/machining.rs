@@ -70,7 +70,7 @@ impl Cell {
         let index = nearest.ok_or_else(nothing)?;
         let part = &self.parts[index];
         check_part(from, &part.kind, next)?;
-        if self.is_had(index) {
+        if self.is_held_or_clamped(index) {
             return Err(WorkstationError::InHand { part: from.into() });
         }
         let here = seat.inverse().compose(&part.frame(&self.world));

@@ -35,7 +35,7 @@ use serde::{Deserialize, Serialize};
 pub use event::{CellError, CellEvent};
 pub use following::Half;
 pub use links::{LinkPose, part_link};
-pub use sagging::Droop;
+pub use sagging::SagReport;
 pub use saving::{RestoreError, SaveError};
 pub use truth::{Holders, RingState};
 pub use workstation::{Placement, WorkstationAction, WorkstationError};
@@ -97,7 +97,7 @@ pub struct Cell {
     jaw_waits: u32, // number of ticks in which the jaw of the vise should have moved and did not
     events: Vec<CellEvent>,
     stays_behind: bool, // true once it was reported that the arm cannot follow the robot
-    droop: Option<Droop>,
+    droop: Option<SagReport>,
     #[serde(with = "crate::image::record")]
     inputs: DeviceInputs,
 }
@@ -194,7 +194,7 @@ impl Cell {
         let outputs = &self.begin_tick(outputs);
         let StepOutputs { tx, dtr, .. } =
             self.t3.step(&StepInputs { rx: outputs.link_tx, cts: self.host_ready });
-        self.hear_t3();
+        self.read_controller();
         self.advance(outputs);
         self.inputs = self.sense(tx, dtr);
         self.inputs
@@ -342,7 +342,7 @@ impl Cell {
     /// Presses a key or an emergency stop. Errors: [`Refusal`] with the missing step; the state is unchanged.
     pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
         let done = self.t3.press(key);
-        self.hear_t3();
+        self.read_controller();
         done
     }
 
@@ -357,7 +357,7 @@ impl Cell {
     }
 
     /// Turn messages of the controller and motions of the robot into events, except those of normal operation.
-    fn hear_t3(&mut self) {
+    fn read_controller(&mut self) {
         for message in self.t3.messages() {
             match message {
                 Message::Warning(warning) => self.events.push(CellEvent::Warning(warning)),

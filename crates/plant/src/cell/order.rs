@@ -6,7 +6,7 @@ use geometry::frame::Frame;
 use super::{WorkstationAction, WorkstationError};
 use crate::description::{CellDescription, Nest, PartType};
 
-pub(crate) enum Spot<'c> {
+pub(crate) enum TargetPlace<'c> {
     Nest(&'c Nest),
     /// On the floor of a tray, with this frame.
     Sector(Frame),
@@ -73,11 +73,11 @@ impl CellDescription {
         kind: &PartType,
         unit: &str,
         sector: u16,
-    ) -> Result<Spot<'_>, WorkstationError> {
+    ) -> Result<TargetPlace<'_>, WorkstationError> {
         let nests = || self.nest.iter().filter(|nest| nest.takes(kind));
         if nests().next().is_some() {
             let nest = nests().find(|nest| nest.location == unit && nest.sector == sector);
-            return nest.map(Spot::Nest).ok_or_else(|| WorkstationError::NoNest {
+            return nest.map(TargetPlace::Nest).ok_or_else(|| WorkstationError::NoNest {
                 part: kind.name.clone(),
                 unit: unit.into(),
                 sector,
@@ -90,7 +90,7 @@ impl CellDescription {
         })?;
         let sectors = tray.sectors.len();
         let unknown = WorkstationError::UnknownSector { unit: unit.into(), sector, sectors };
-        tray.sector(sector).map(Spot::Sector).ok_or(unknown)
+        tray.sector(sector).map(TargetPlace::Sector).ok_or(unknown)
     }
 
     pub(crate) fn machine_at(&self, location: &str, part: &str) -> Result<Machine<'_>, WorkstationError> {

@@ -2,7 +2,7 @@
 
 use geometry::frame::{Frame, Vector as Inches, rotation_by};
 
-use super::{Cell, Placement, WorkstationError, order::Spot};
+use super::{Cell, Placement, WorkstationError, order::TargetPlace};
 use crate::{
     bodies,
     convert::{inches, to_pose},
@@ -29,8 +29,8 @@ impl CellDescription {
         [x, y, angle]: [f64; 3],
     ) -> Result<Frame, WorkstationError> {
         let (place, up) = match self.spot(kind, unit, sector)? {
-            Spot::Nest(nest) => (nest.frame(), DROP),
-            Spot::Sector(place) => (place, kind.size[0] / 2.0 + DROP),
+            TargetPlace::Nest(nest) => (nest.frame(), DROP),
+            TargetPlace::Sector(place) => (place, kind.size[0] / 2.0 + DROP),
         };
         let turned = place.turned(&rotation_by(&Inches::new(angle.to_radians(), 0.0, 0.0)));
         Ok(Frame { position: turned.position + Inches::new(x, y, up), ..turned })
@@ -48,8 +48,8 @@ impl CellDescription {
     ) -> Result<Frame, WorkstationError> {
         let aside = match (*placement, self.spot(kind, unit, sector)?) {
             (Placement::At { x, y, angle }, _) => [x, y, angle],
-            (Placement::Random, Spot::Nest(_)) => [0.0; 3],
-            (Placement::Random, Spot::Sector(_)) => {
+            (Placement::Random, TargetPlace::Nest(_)) => [0.0; 3],
+            (Placement::Random, TargetPlace::Sector(_)) => {
                 let greatest = self.tray_shape.random_offset;
                 [noise.within(greatest), noise.within(greatest), noise.within(180.0)]
             }

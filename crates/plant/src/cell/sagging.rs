@@ -23,7 +23,7 @@ const NEAR: f64 = 0.5;
 const LEAST_DEPTH: f64 = 0.001; // least growth of a contact that is recorded, in
 
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub struct Droop {
+pub struct SagReport {
     pub cause: Cut,
     pub position: [f64; 3], // position of the tool point when the pressure was lost, in
     /// Contacts since then, each with its greatest depth; the deepest first.
@@ -33,7 +33,7 @@ pub struct Droop {
     before: Vec<Contact>, // contacts when the pressure was lost
 }
 
-impl Droop {
+impl SagReport {
     /// Its state so far, as text to follow "the arm".
     #[must_use]
     pub fn end(&self) -> String {
@@ -67,14 +67,14 @@ impl Droop {
 
 impl Cell {
     #[must_use]
-    pub fn droop(&self) -> Option<&Droop> {
+    pub fn droop(&self) -> Option<&SagReport> {
         self.droop.as_ref()
     }
 
     /// Fail the hydraulics: the pressure is lost at once, without a switch.
     pub fn fail_hydraulics(&mut self) {
         self.t3.lose_pressure();
-        self.hear_t3();
+        self.read_controller();
     }
 
     /// Repair the hydraulics; the keys of III.6 restore the pressure.
@@ -86,7 +86,7 @@ impl Cell {
         match (self.t3.cut(), &self.droop) {
             (None, Some(_)) => self.droop = None,
             (Some(cause), None) => {
-                self.droop = Some(Droop {
+                self.droop = Some(SagReport {
                     cause,
                     position: self.t3.arm().tool().position.into(),
                     touched: Vec::new(),

@@ -70,10 +70,10 @@ impl Cell {
         }
         self.drive_fingers(dt, Hand::Pedestal, Hand::Pedestal.supply(&self.description, outputs));
         self.drive_jaw(dt);
-        self.rub_holds(dt);
+        self.apply_hold_friction(dt);
         self.work_drum(dt);
         self.world.step();
-        self.let_holds_give_way();
+        self.slide_overloaded_holds();
         taken
     }
 

@@ -107,7 +107,7 @@ impl Cell {
     /// Move a free part to a frame, world, in. On error, the state is unchanged.
     pub fn move_part(&mut self, id: u32, frame: &Frame) -> Result<(), WorkstationError> {
         let index = self.index_of(id).ok_or(WorkstationError::NoSuchPart { id })?;
-        if self.is_had(index) {
+        if self.is_held_or_clamped(index) {
             return Err(WorkstationError::Held { part: self.parts[index].kind.name.clone() });
         }
         let kind = self.parts[index].kind.clone();

@@ -205,7 +205,7 @@ impl Cell {
     fn remove(&mut self, id: u32) -> Result<(), WorkstationError> {
         let index =
             self.parts.iter().position(|part| part.id == id).ok_or(WorkstationError::NoSuchPart { id })?;
-        if self.is_had(index) {
+        if self.is_held_or_clamped(index) {
             return Err(WorkstationError::Held { part: self.parts[index].kind.name.clone() });
         }
         let part = self.parts.remove(index);

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 use diagnostics::{
     Diagnostics, Problem, Problems,
-    toml::{Path, StandIns, element, join},
+    toml::{Defaulted, Path, element, join},
 };
 use geometry::{
     kinematics::{JOINT_NAMES, T3},
@@ -21,7 +21,7 @@ impl CellDescription {
     /// Check all numbers and names. Fails with [`DescriptionError::Mistakes`] with all mistakes, without their places.
     pub fn validate(&self) -> Result<(), DescriptionError> {
         let mut problems = Problems::default();
-        problems.extend(self.problems(&StandIns::default()).0);
+        problems.extend(self.problems(&Defaulted::default()).0);
         if problems.is_empty() {
             return Ok(());
         }
@@ -29,7 +29,7 @@ impl CellDescription {
     }
 
     /// All problems of the entries without stand-ins, and the entries that must be more than 0.
-    pub(super) fn problems(&self, stand_ins: &StandIns) -> (Vec<Problem>, BTreeSet<Path>) {
+    pub(super) fn problems(&self, stand_ins: &Defaulted) -> (Vec<Problem>, BTreeSet<Path>) {
         let mut check = Check { problems: Vec::new(), positive: BTreeSet::new(), stand_ins };
         self.check_physics_and_robot(&mut check);
         self.check_hydraulics(&mut check);

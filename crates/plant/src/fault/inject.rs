@@ -11,7 +11,7 @@ use rcs_core::tick::TICK_S;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    DeliveryFault, Disorder, Fault, FaultPlan, What,
+    DeliveryFault, Disorder, Fault, FaultPlan, FaultSubject,
     valve::{cut_air, hold_ring},
 };
 use crate::{description::CellDescription, noise::Noise, sensor::DelayLine};
@@ -77,7 +77,7 @@ impl Injector {
 
     /// Add the faults of another plan, except initial displacements.
     pub(crate) fn add(&mut self, plan: &FaultPlan, seed: u64) {
-        let stays = |fault: &&Fault| !matches!(fault.what, What::PedestalMoved { .. });
+        let stays = |fault: &&Fault| !matches!(fault.what, FaultSubject::PedestalMoved { .. });
         self.push(plan.faults.iter().filter(stays), plan.seed, seed);
     }
 
@@ -114,7 +114,7 @@ impl Injector {
         self.turn()
     }
 
-    fn active(&self) -> impl Iterator<Item = &What> {
+    fn active(&self) -> impl Iterator<Item = &FaultSubject> {
         self.faults.iter().filter(|running| running.active).map(|running| &running.fault.what)
     }
 
@@ -123,8 +123,8 @@ impl Injector {
         let mut arrives = *outputs;
         for what in self.active() {
             match what {
-                What::Valve(valve, open) => valve.write(&mut arrives, i64::from(*open)),
-                What::RingStuck => hold_ring(&mut arrives),
+                FaultSubject::Valve(valve, open) => valve.write(&mut arrives, i64::from(*open)),
+                FaultSubject::RingStuck => hold_ring(&mut arrives),
                 _ => {}
             }
         }
@@ -138,7 +138,7 @@ impl Injector {
     pub fn inputs(&mut self, inputs: &mut DeviceInputs) {
         let tick = self.tick;
         for running in self.faults.iter_mut().filter(|running| running.active) {
-            if let What::Sensor(sensor, disorder) = running.fault.what {
+            if let FaultSubject::Sensor(sensor, disorder) = running.fault.what {
                 running.disturb(sensor, disorder, tick, inputs);
             }
         }
@@ -148,7 +148,7 @@ impl Injector {
     pub(crate) fn vision(&mut self, inputs: &mut DeviceInputs) {
         let tick = self.tick;
         for running in self.faults.iter_mut().filter(|running| running.active) {
-            if let What::Sensor(sensor, disorder) = running.fault.what
+            if let FaultSubject::Sensor(sensor, disorder) = running.fault.what
                 && sensor.is_camera()
             {
                 running.disturb(sensor, disorder, tick, inputs);
@@ -158,27 +158,27 @@ impl Injector {
 
     #[must_use]
     pub fn air_lost(&self) -> bool {
-        self.active().any(|what| *what == What::AirLost)
+        self.active().any(|what| *what == FaultSubject::AirLost)
     }
 
     #[must_use]
     pub fn hydraulics_lost(&self) -> bool {
-        self.active().any(|what| *what == What::HydraulicsLost)
+        self.active().any(|what| *what == FaultSubject::HydraulicsLost)
     }
 
     #[must_use]
     pub fn jaw_stuck(&self) -> bool {
-        self.active().any(|what| *what == What::JawStuck)
+        self.active().any(|what| *what == FaultSubject::JawStuck)
     }
 
     #[must_use]
     pub fn camera_blind(&self) -> bool {
-        self.active().any(|what| *what == What::CameraBlind)
+        self.active().any(|what| *what == FaultSubject::CameraBlind)
     }
 
     #[must_use]
     pub fn is_device_cut(&self, device: &str) -> bool {
-        self.active().any(|what| matches!(what, What::FieldCut(cut) if cut == device))
+        self.active().any(|what| matches!(what, FaultSubject::FieldCut(cut) if cut == device))
     }
 
     /// Errors of the delivery of a part, and the faults that begin or end with it.
@@ -187,7 +187,7 @@ impl Injector {
         let mut delivery = Delivery::default();
         let mut changes = Vec::new();
         for running in &mut self.faults {
-            let What::Delivery(object, mishap) = &running.fault.what else { continue };
+            let FaultSubject::Delivery(object, mishap) = &running.fault.what else { continue };
             let meant = object.as_deref().is_none_or(|object| object == part);
             if !meant
                 || !running.fault.when.covers(tick)
@@ -293,14 +293,14 @@ mod tests {
     use crate::fault::When;
     use interfaces::point::Output;
 
-    fn injector(whats: Vec<(What, When)>) -> Injector {
+    fn injector(whats: Vec<(FaultSubject, When)>) -> Injector {
         let faults = whats.into_iter().enumerate();
         let faults = faults.map(|(index, (what, when))| Fault { number: index + 1, what, when }).collect();
         Injector::new(&FaultPlan { seed: 1, faults }, 1)
     }
 
-    fn sensor(name: &str, disorder: Disorder) -> What {
-        What::Sensor(Input::named(name).unwrap(), disorder)
+    fn sensor(name: &str, disorder: Disorder) -> FaultSubject {
+        FaultSubject::Sensor(Input::named(name).unwrap(), disorder)
     }
 
     /// The values shown, from tick 1, for a word that counts up by 10 every tick.
@@ -370,9 +370,9 @@ mod tests {
 
     #[test]
     fn stuck_valves_pass_no_air() {
-        let open = What::Valve(Output::named("grip.open-fine").unwrap(), true);
+        let open = FaultSubject::Valve(Output::named("grip.open-fine").unwrap(), true);
         let late = When { from: 2, ..When::ALWAYS };
-        let mut injector = injector(vec![(open, When::ALWAYS), (What::AirLost, late)]);
+        let mut injector = injector(vec![(open, When::ALWAYS), (FaultSubject::AirLost, late)]);
         injector.next();
         assert_eq!(injector.outputs(&DeviceOutputs::default()).grip.bits, 1);
         injector.next();
@@ -384,9 +384,9 @@ mod tests {
         let bar = || Some("BAR".to_owned());
         let late = When { from: 10, ..When::ALWAYS };
         let mut injector = injector(vec![
-            (What::Delivery(bar(), DeliveryFault::Misplaced { x: 0.5, y: -1.0 }), When::ALWAYS),
-            (What::Delivery(None, DeliveryFault::Turned(30.0)), When::ALWAYS),
-            (What::Delivery(None, DeliveryFault::Missing), late),
+            (FaultSubject::Delivery(bar(), DeliveryFault::Misplaced { x: 0.5, y: -1.0 }), When::ALWAYS),
+            (FaultSubject::Delivery(None, DeliveryFault::Turned(30.0)), When::ALWAYS),
+            (FaultSubject::Delivery(None, DeliveryFault::Missing), late),
         ]);
         let (delivery, changes) = injector.delivery("BAR");
         let expected = Delivery { missing: false, instead: None, aside: [0.5, -1.0], angle: 30.0 };

@@ -28,7 +28,7 @@ pub struct FaultPlan {
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Fault {
     pub number: usize,
-    pub what: What,
+    pub what: FaultSubject,
     pub when: When,
 }
 
@@ -55,7 +55,7 @@ impl When {
 }
 
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub enum What {
+pub enum FaultSubject {
     Sensor(#[serde(with = "crate::named")] Input, Disorder),
     Valve(#[serde(with = "crate::named")] Output, bool),
     AirLost,
@@ -106,7 +106,7 @@ pub enum DeliveryFault {
     WrongPart(String),
 }
 
-impl What {
+impl FaultSubject {
     /// True if it acts on deliveries instead of for a time.
     #[must_use]
     pub const fn is_delivery(&self) -> bool {
@@ -125,7 +125,7 @@ impl FaultPlan {
 fn displaced<'f>(faults: impl Iterator<Item = &'f Fault>, description: &CellDescription) -> CellDescription {
     let mut cell = description.clone();
     for fault in faults {
-        if let What::PedestalMoved { x, y, angle } = fault.what {
+        if let FaultSubject::PedestalMoved { x, y, angle } = fault.what {
             let stand = cell.pedestal.stand.clone();
             cell.pedestal.position[0] += x;
             cell.pedestal.position[1] += y;
@@ -154,7 +154,7 @@ impl fmt::Display for Disorder {
     }
 }
 
-impl fmt::Display for What {
+impl fmt::Display for FaultSubject {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Sensor(sensor, disorder) => write!(f, "{} {disorder}", sensor.name()),

@@ -155,7 +155,7 @@ impl Ideal {
             return;
         }
         let Some(hand) = HANDS.into_iter().find(|hand| self.is_held_by(*hand, part)) else {
-            return self.lay_down(part);
+            return self.put_on_support(part);
         };
         if !self.is_held_elsewhere(hand, part)
             && let Some(squeeze) = self.between(hand, part)
@@ -165,7 +165,7 @@ impl Ideal {
         }
     }
 
-    fn lay_down(&mut self, part: usize) {
+    fn put_on_support(&mut self, part: usize) {
         let Some(placed) = self.parts.get(part) else { return };
         let under = || self.room.let_down(&placed.kind, &placed.frame, &-Inches::z(), DROP);
         let rests = self.room.nest_seat(placed).or_else(under);

@@ -17,7 +17,7 @@ use geometry::{
 };
 
 /// Distance of the mesh's surface from the collision body of a link, in: as thin as a coat of paint.
-const COAT: f64 = 0.15;
+const MESH_OFFSET: f64 = 0.15;
 const CHEEK: f64 = 1.8; // thickness of the plates of a fork joint, in
 const PLAY: f64 = 0.4; // gap between a fork and the part that turns in it, in
 
@@ -80,7 +80,7 @@ pub fn base(block: &Block) -> Mesh {
 
 fn turret_mesh(radius: f64, half: f64) -> Mesh {
     let mut mesh = Mesh::default();
-    let coat = radius + COAT;
+    let coat = radius + MESH_OFFSET;
     let bearing = [(0.0, coat + 3.4), (1.6, coat + 3.4), (2.0, coat + 3.0), (2.6, coat + 3.0), (3.6, coat)];
     mesh.lathe(Charcoal, [0.0, 0.0, -half - 1.0], [0.0, 0.0, half], ROUND, &bearing);
     let drum =
@@ -148,8 +148,8 @@ fn fork(mesh: &mut Mesh, inner: f64, hub: f64, reach: f64, high: f64) {
 
 fn upper_arm(turret: f64, radius: f64) -> Mesh {
     let mut mesh = Mesh::default();
-    let (elbow, r) = (T3.upper_arm, radius + COAT);
-    let inner = turret + COAT + PLAY;
+    let (elbow, r) = (T3.upper_arm, radius + MESH_OFFSET);
+    let inner = turret + MESH_OFFSET + PLAY;
     let front = turret + 3.0;
     fork(&mut mesh, inner, 6.6, front + 5.0, r + 0.6);
     mesh.cuboid(Orange, [front, -inner - CHEEK, -r - 0.6], [front + 5.0, inner + CHEEK, r + 0.6], 1.2);
@@ -207,8 +207,8 @@ fn lettering(mesh: &mut Mesh, x: f64, y: f64, side: f64) {
 
 fn forearm(upper: f64, radius: f64) -> Mesh {
     let mut mesh = Mesh::default();
-    let (wrist, r) = (T3.forearm, radius + COAT);
-    let inner = upper + COAT + PLAY;
+    let (wrist, r) = (T3.forearm, radius + MESH_OFFSET);
+    let inner = upper + MESH_OFFSET + PLAY;
     mesh.rod(Steel, [0.0, -inner - 0.5, 0.0], [0.0, inner + 0.5, 0.0], r, 0.05, ROUND);
     let front = upper + 1.4;
     fork(&mut mesh, inner, 5.2, front + 4.0, r + 0.3);
@@ -248,7 +248,7 @@ fn forearm(upper: f64, radius: f64) -> Mesh {
 
 fn wrist_pitch(forearm: f64, radius: f64) -> Mesh {
     let mut mesh = Mesh::default();
-    let out = forearm + COAT;
+    let out = forearm + MESH_OFFSET;
     for side in [-1.0, 1.0] {
         mesh.rod(Charcoal, [0.0, side * (out - 0.3), 0.0], [0.0, side * (out + 0.7), 0.0], 2.9, 0.3, ROUND);
         mesh.rod(Bright, [0.0, side * (out + 0.6), 0.0], [0.0, side * (out + 0.9), 0.0], 1.2, 0.0, 6);

@@ -23,7 +23,7 @@ const BEVEL: f64 = 0.25; // chamfer of surfaces without contacts, in
 const PAINT: f64 = 0.015;
 const SPINDLE: f64 = 10.0; // height of the spindle above the top of the jaws, in
 /// The fenced area, as shares of half the floor: left, right, back and front border.
-const YARD: [f64; 4] = [-0.68, 0.92, 0.44, -0.78];
+const FENCED_AREA: [f64; 4] = [-0.68, 0.92, 0.44, -0.78];
 
 /// The models of the fixed things in world coordinates, in groups that a viewer can hide.
 #[must_use]
@@ -181,7 +181,7 @@ fn post(mesh: &mut Mesh, under: &Vector, floor: f64) {
 fn yard(floor: &Block) -> [f64; 4] {
     let (middle, half) = (floor.frame.position, floor.size / 2.0);
     let at = |share: f64, axis: usize| middle[axis] + share * half[axis];
-    [at(YARD[0], 0), at(YARD[1], 0), at(YARD[2], 1), at(YARD[3], 1)]
+    [at(FENCED_AREA[0], 0), at(FENCED_AREA[1], 0), at(FENCED_AREA[2], 1), at(FENCED_AREA[3], 1)]
 }
 
 fn paint(mesh: &mut Mesh, floor: &Block, top: f64) {

@@ -84,7 +84,7 @@ pub enum Later {
     Await,        // execute the request when the commands control the robot again
 }
 
-pub struct Around<'a> {
+pub struct RequestContext<'a> {
     pub tick: Tick,
     pub memory: &'a CommonMemory,
     pub inputs: &'a DeviceInputs,
@@ -167,7 +167,7 @@ impl Operator {
     }
 
     /// Execute an event. Returns the text of the answer, or the reason of the refusal.
-    pub fn carry_out(&mut self, input: &Input, around: &mut Around<'_>) -> Result<String, String> {
+    pub fn carry_out(&mut self, input: &Input, around: &mut RequestContext<'_>) -> Result<String, String> {
         let who = input.source();
         match input.event() {
             Event::Connected => self.connected(who, around),
@@ -182,7 +182,7 @@ impl Operator {
         }
     }
 
-    fn connected(&mut self, who: &str, around: &mut Around<'_>) -> Result<String, String> {
+    fn connected(&mut self, who: &str, around: &mut RequestContext<'_>) -> Result<String, String> {
         self.sessions.push(who.to_owned());
         self.attend(around);
         Ok(String::new())
@@ -190,7 +190,7 @@ impl Operator {
 
     /// End the commands by hand of an operator who leaves, is silent, or has disconnected. This never
     /// accelerates a motion; the knob of a robot at a port goes to 0. Returns the ended motions as text.
-    fn end_hold(&mut self, who: &str, around: &mut Around<'_>) -> String {
+    fn end_hold(&mut self, who: &str, around: &mut RequestContext<'_>) -> String {
         let ended = self.release(who);
         if ended.turns_table {
             around.workstation.cell.release_table_keys();
@@ -215,7 +215,7 @@ impl Operator {
         Ended { knob, ..ended }
     }
 
-    fn disconnected(&mut self, who: &str, around: &mut Around<'_>) -> Result<String, String> {
+    fn disconnected(&mut self, who: &str, around: &mut RequestContext<'_>) -> Result<String, String> {
         self.sessions.retain(|session| session != who);
         let ended = self.leave(who, around);
         self.attend(around);
@@ -223,7 +223,7 @@ impl Operator {
     }
 
     /// End an operator's commands by hand, withdraw its load, and take the command from it.
-    fn leave(&mut self, who: &str, around: &mut Around<'_>) -> String {
+    fn leave(&mut self, who: &str, around: &mut RequestContext<'_>) -> String {
         let ended = self.end_hold(who, around);
         if self.commander.as_deref() == Some(who) {
             self.commander = None;
@@ -233,13 +233,18 @@ impl Operator {
     }
 
     /// Set whether an operator is connected in the job, which waits only for a connected one.
-    fn attend(&self, around: &mut Around<'_>) {
+    fn attend(&self, around: &mut RequestContext<'_>) {
         if let Ok(job) = around.neighbours.job_under_way() {
             job.attend(!self.sessions.is_empty());
         }
     }
 
-    fn run_line(&mut self, who: &str, request: Request, around: &mut Around<'_>) -> Result<String, String> {
+    fn run_line(
+        &mut self,
+        who: &str,
+        request: Request,
+        around: &mut RequestContext<'_>,
+    ) -> Result<String, String> {
         if !request.is_stop() {
             self.take_command(who)?;
             if around.loading && request.is_of_the_job() {
@@ -253,7 +258,7 @@ impl Operator {
             if request.needs_the_robot() && !self.hand.is_held() && obstacles::is_moved_by_hand(around.memory)
             {
                 self.later = Some(Later::Await);
-                return Err(obstacles::LED.to_owned());
+                return Err(obstacles::STILL_SETTLING.to_owned());
             }
         }
         let done = String::new();
@@ -309,12 +314,12 @@ impl Operator {
             Request::GoOn => {
                 obstacles::check_job(around)?;
                 job(around)?.go_on(tick).map_err(|error| error.to_string())?;
-                Ok(self.what_holds_the_robot(around))
+                Ok(self.hold_reasons(around))
             }
             Request::Skip => {
                 obstacles::check_job(around)?;
                 job(around)?.skip(tick).map_err(|error| error.to_string())?;
-                Ok(self.what_holds_the_robot(around))
+                Ok(self.hold_reasons(around))
             }
             Request::Command(text, command) => {
                 let present = judge::present(around.memory);
@@ -364,7 +369,7 @@ impl Operator {
         }
     }
 
-    fn status(&self, around: &mut Around<'_>) -> String {
+    fn status(&self, around: &mut RequestContext<'_>) -> String {
         let (stand_alone, is_ending) = (around.neighbours.is_stand_alone(), around.neighbours.is_ending());
         let job = match around.neighbours.job_under_way() {
             Ok(job) => match job.progress() {
@@ -389,7 +394,7 @@ impl Operator {
     }
 
     /// The obstacles to the robot's motion although the job plays, as text; empty if there are none.
-    fn what_holds_the_robot(&self, around: &Around<'_>) -> String {
+    fn hold_reasons(&self, around: &RequestContext<'_>) -> String {
         let knob = if self.is_stopped { 0 } else { self.shown.velocity };
         obstacles::of_the_robot(around.memory, knob, &self.shown, self.terminals.inputs())
     }
@@ -400,7 +405,7 @@ fn directory(data: &Path) -> String {
     absolute.unwrap_or_else(|_| data.to_owned()).display().to_string()
 }
 
-fn job<'a>(around: &'a mut Around<'_>) -> Result<&'a mut Hwsc, String> {
+fn job<'a>(around: &'a mut RequestContext<'_>) -> Result<&'a mut Hwsc, String> {
     around.neighbours.job_under_way()
 }
 
@@ -410,7 +415,7 @@ fn no_device(field: &Desk, name: &str) -> String {
 }
 
 /// The couplers of the run. Errors: a message if the run has no couplers.
-fn field<'a>(around: &'a mut Around<'_>) -> Result<&'a mut Desk, String> {
+fn field<'a>(around: &'a mut RequestContext<'_>) -> Result<&'a mut Desk, String> {
     let field = around.workstation.field.as_deref_mut();
     field.map(Field::desk_mut).ok_or_else(|| "this run has no couplers: --field".to_owned())
 }

@@ -7,7 +7,7 @@ use interfaces::{
 use neighbours::workstation::player::Workstation as _;
 use plant::EStop;
 
-use super::Around;
+use super::RequestContext;
 use closed_loop::workstation::SimulatedWorkstation;
 
 /// Requests that start up the robot after an emergency.
@@ -27,7 +27,7 @@ pub fn emergency(workstation: &SimulatedWorkstation) -> Option<String> {
 }
 
 /// Refuses to continue under an emergency, unless the job resets it. Errors: the emergency and its remedy.
-pub fn check_job(around: &mut Around<'_>) -> Result<(), String> {
+pub fn check_job(around: &mut RequestContext<'_>) -> Result<(), String> {
     match emergency(around.workstation) {
         Some(why) if !around.neighbours.job_under_way()?.resets_emergency() => {
             Err(format!("nothing moves: {why}; then `job go`"))
@@ -37,7 +37,7 @@ pub fn check_job(around: &mut Around<'_>) -> Result<(), String> {
 }
 
 /// Why a command is refused soon after a motion by hand.
-pub const LED: &str = "the robot is still coming to rest after its motion by hand: ask again";
+pub const STILL_SETTLING: &str = "the robot is still coming to rest after its motion by hand: ask again";
 
 /// True while a process reports that the joystick box controls the robot. Prim reads the box, and each report
 /// rises one process per tick: a command that Task receives meanwhile fails.

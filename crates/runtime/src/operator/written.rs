@@ -48,9 +48,9 @@ pub fn check(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Resul
 pub fn check_value(write: &Write, memory: &CommonMemory, data: &TaskData<'_>) -> Result<String, String> {
     if let Some(object) = &write.object {
         is_in_data(write, object, data)?;
-        is_felt(write.variable, memory)?;
+        check_presence(write.variable, memory)?;
         if write.variable == Variable::Held {
-            is_so_wide(object, write.grip, memory, data)?;
+            check_grip_size(object, write.grip, memory, data)?;
         }
     }
     Ok(format!("{} was {}, is {}", write.variable, old_value(write.variable, memory), new_value(write)))
@@ -88,7 +88,7 @@ fn is_in_data(write: &Write, object: &Name16, data: &TaskData<'_>) -> Result<(),
 }
 
 /// Check that the sensors detect an object, which is required for a name.
-fn is_felt(variable: Variable, memory: &CommonMemory) -> Result<(), String> {
+fn check_presence(variable: Variable, memory: &CommonMemory) -> Result<(), String> {
     let (hand, felt, process) = match variable {
         Variable::Regrip => {
             let status = &memory.pedestal.status;
@@ -109,7 +109,12 @@ fn is_felt(variable: Variable, memory: &CommonMemory) -> Result<(), String> {
 }
 
 /// Check that the opening of the fingers is that of a grip of the object.
-fn is_so_wide(object: &Name16, grip: i32, memory: &CommonMemory, data: &TaskData<'_>) -> Result<(), String> {
+fn check_grip_size(
+    object: &Name16,
+    grip: i32,
+    memory: &CommonMemory,
+    data: &TaskData<'_>,
+) -> Result<(), String> {
     let gripper = EmoveGripper::attached(memory);
     let size = data.object(object, grip).map_or(0, |(_, sizes)| sizes.grasp_size);
     match gripper.opening(memory) {

@@ -29,7 +29,7 @@ impl Run {
 
     /// End a run with the inputs of a log that has ended, if the job waits for an operator: in fast clock it would wait
     /// forever.
-    pub(super) fn end_if_nobody_asks(&mut self, tick: Tick) {
+    pub(super) fn end_without_inputs(&mut self, tick: Tick) {
         let have_ended = self.ramp.is_none() && self.asked.have_ended(tick);
         if have_ended && self.neighbours.job_under_way().is_ok_and(|job| job.waits_idle()) {
             let text = "the job waits for an operator, and the log with the operator's inputs has ended";

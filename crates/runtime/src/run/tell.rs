@@ -111,7 +111,7 @@ impl Run {
     }
 
     /// If the job has begun to wait, report it to operators, terminal and log.
-    pub(super) fn tell_operators(&mut self, tick: Tick) {
+    pub(super) fn publish_news(&mut self, tick: Tick) {
         let Some(reason) = self.neighbours.operator_news() else { return };
         self.waits = Some(reason.clone());
         let event = Event::Waits(reason);

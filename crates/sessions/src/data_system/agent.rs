@@ -109,7 +109,7 @@ impl Agent {
     }
 
     #[must_use]
-    pub const fn with_patience(mut self, patience: Duration) -> Self {
+    pub const fn with_reply_limit(mut self, patience: Duration) -> Self {
         self.patience = patience;
         self
     }
@@ -149,7 +149,7 @@ impl Agent {
             return Some(answer);
         }
         // A refused update of an earlier run is reported, but does not prevent the start of this run.
-        let told = self.tell_all()?;
+        let told = self.send_all_updates()?;
         let why =
             told.filter(|told| told.status.summary != Summary::Done).map_or(String::new(), |told| told.why);
         Some(Answer { why, ..answer })
@@ -160,7 +160,7 @@ impl Agent {
         let kept: Result<_, String> =
             kept.and_then(|bytes: &[u8; DML]| self.outbox.keep(bytes).map_err(|error| error.to_string()));
         match kept {
-            Ok(_) => self.tell_all()?,
+            Ok(_) => self.send_all_updates()?,
             Err(why) => Some(refused(why)),
         }
     }
@@ -168,7 +168,7 @@ impl Agent {
     /// Send all stored updates, the oldest first; the last answer, if there were updates; `None` if one is not
     /// answered.
     #[expect(clippy::option_option, reason = "no answer differs from nothing to tell")]
-    fn tell_all(&mut self) -> Option<Option<Answer>> {
+    fn send_all_updates(&mut self) -> Option<Option<Answer>> {
         let pending = match self.outbox.pending() {
             Ok(pending) => pending,
             Err(error) => return Some(Some(refused(error.to_string()))),

@@ -11,12 +11,12 @@ const SUFFIX: &str = "lock"; // suffix of the file that is locked, after the nam
 
 /// The exclusive right to use a database, held until it is dropped. The system releases it whenever the program ends.
 #[derive(Debug)]
-pub struct Alone {
+pub struct DatabaseLock {
     path: PathBuf,
     _lock: File,
 }
 
-impl Alone {
+impl DatabaseLock {
     /// Takes the right for an existing file; `None` if another program holds it.
     pub fn take(database: &Path) -> io::Result<Option<Self>> {
         // All links to the database share one file.
@@ -34,7 +34,7 @@ impl Alone {
     }
 }
 
-impl Drop for Alone {
+impl Drop for DatabaseLock {
     fn drop(&mut self) {
         let _ = fs::remove_file(&self.path);
     }

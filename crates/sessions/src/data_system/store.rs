@@ -18,7 +18,7 @@ use std::{
 use neighbours::data_system::{Item, Records, Said};
 use rusqlite::{Connection, OptionalExtension as _, Row, TransactionBehavior, params};
 
-use super::alone::Alone;
+use super::alone::DatabaseLock;
 
 const APPLICATION_ID: i32 = 0x5243_5332; // application ID in the file of the database: "RCS2"
 const VERSION: i32 = 2;
@@ -113,7 +113,7 @@ pub enum StoreError {
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,
-    _alone: Option<Alone>, // held by a writing program, and released after the connection is closed
+    _alone: Option<DatabaseLock>, // held by a writing program, and released after the connection is closed
 }
 
 impl Store {
@@ -136,7 +136,7 @@ impl Store {
     pub fn open_alone(file: &Path) -> Result<Self, StoreError> {
         let connection =
             Connection::open(file).map_err(|source| StoreError::Sqlite { file: file.to_owned(), source })?;
-        let alone = Alone::take(file)
+        let alone = DatabaseLock::take(file)
             .map_err(|source| StoreError::Lock { file: file.to_owned(), source })?
             .ok_or_else(|| StoreError::InUse { file: file.to_owned() })?;
         Ok(Self { _alone: Some(alone), ..Self::with_tables(connection, file)? })

@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use neighbours::data_system::{Answer, Item, Keeper, Records as _, Reply, Server};
+use neighbours::data_system::{Answer, Item, ItemStore, Records as _, Reply, Server};
 
 use super::{
     agent::{Agent, Remark},
@@ -18,7 +18,7 @@ use super::{
 use crate::network::StopHandle;
 
 /// Time after which a waiting run considers the server dead, long even for a disk. An agent has its own time limit.
-const PATIENCE: Duration = Duration::from_secs(30);
+const END_LIMIT: Duration = Duration::from_secs(30);
 
 /// Time between two checks for a server while no command is in progress.
 const IDLE: Duration = Duration::from_millis(500);
@@ -155,14 +155,14 @@ impl Threaded {
                 Err(TryRecvError::Disconnected) => Err(Dead),
             },
             Pace::Wait if self.stop_handle.is_some() => self.responses.recv().map(Some).map_err(|_| Dead),
-            Pace::Wait => self.responses.recv_timeout(PATIENCE).map(Some).map_err(|_| Dead),
+            Pace::Wait => self.responses.recv_timeout(END_LIMIT).map(Some).map_err(|_| Dead),
         }
     }
 }
 
 struct Dead;
 
-impl Keeper for Threaded {
+impl ItemStore for Threaded {
     fn execute(&mut self, id: u16, bytes: &[u8]) -> bool {
         self.send(Request::Execute(id, bytes.to_vec()))
     }
@@ -188,7 +188,7 @@ impl Keeper for Threaded {
             return Err("the Data System has ended".to_owned());
         }
         loop {
-            match self.responses.recv_timeout(PATIENCE) {
+            match self.responses.recv_timeout(END_LIMIT) {
                 Ok(Response::Items(items)) => return items.map_err(|error| error.to_string()),
                 Ok(Response::Executed(..) | Response::Silent(_) | Response::Looked) => {}
                 Err(_) => return Err("the Data System does not answer".to_owned()),
@@ -207,7 +207,7 @@ impl Drop for Threaded {
         let Some(thread) = self.thread.take() else { return };
         let ended = Instant::now();
         // A disk could block the thread indefinitely. The end of a run must not depend on it.
-        while !thread.is_finished() && ended.elapsed() < PATIENCE {
+        while !thread.is_finished() && ended.elapsed() < END_LIMIT {
             thread::sleep(Duration::from_millis(1));
         }
         if thread.is_finished() {

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Time without reading after which a client is disconnected.
-pub const PATIENCE: Duration = Duration::from_secs(5);
+pub const READ_LIMIT: Duration = Duration::from_secs(5);
 
 /// Receives a sentence per disconnected client, with the name of the client and the reason.
 pub type Notices = Sender<String>;
@@ -54,6 +54,6 @@ pub(crate) fn name(number: u64, person: Option<Person>) -> Option<Name> {
 impl Default for Options {
     fn default() -> Self {
         let (info, origins, page) = (ServerInfo::default(), Vec::new(), None);
-        Self { origins, page, info, patience: PATIENCE, knob: None, access: None, notices: None }
+        Self { origins, page, info, patience: READ_LIMIT, knob: None, access: None, notices: None }
     }
 }

@@ -10,14 +10,14 @@ use std::{
 
 use crate::operator::{
     clock::{Estimate, RunTime},
-    protocol::{self, Answer, Lines, Name, PATIENCE, ProtocolError, TEXT},
+    protocol::{self, ANSWER_LIMIT, Answer, Lines, Name, ProtocolError, TEXT},
 };
 
 /// Time between two keep-alive lines, well below the time after which a run ends motion by hand.
 pub const ALIVE: Duration = Duration::from_millis(100);
 
 /// Time limit for the answer to a load. The run answers when all boards have checked the block.
-const LOAD_PATIENCE: Duration = Duration::from_secs(15);
+const LOAD_WAIT_LIMIT: Duration = Duration::from_secs(15);
 
 #[derive(Debug, thiserror::Error)]
 pub enum ClientError {
@@ -35,8 +35,8 @@ pub enum ClientError {
     Protocol(#[from] ProtocolError),
     #[error(
         "the run has not answered within {} s (a load: {} s): the request is void, unless it is a stop",
-        PATIENCE.as_secs(),
-        LOAD_PATIENCE.as_secs()
+        ANSWER_LIMIT.as_secs(),
+        LOAD_WAIT_LIMIT.as_secs()
     )]
     Silent,
     #[error("a line of 1 to {TEXT} printable bytes was expected, found {found}")]
@@ -62,7 +62,7 @@ impl Client {
 
     /// Begins a session over a stream that is connected to the run.
     pub fn over(stream: UnixStream, name: &Name) -> Result<Self, ClientError> {
-        stream.set_write_timeout(Some(PATIENCE))?;
+        stream.set_write_timeout(Some(ANSWER_LIMIT))?;
         let mut client = Self {
             stream,
             lines: Lines::default(),
@@ -73,7 +73,7 @@ impl Client {
         };
         // A run that refuses at once may already have closed the connection. Its reason can still be read.
         let sent = client.write(&format!("hello {name}\n"));
-        let said = client.wait_for_line(Instant::now() + PATIENCE);
+        let said = client.wait_for_line(Instant::now() + ANSWER_LIMIT);
         let line = said.map_err(|error| sent.err().unwrap_or(error))?;
         let Some(greeting) = protocol::greeting(&line) else {
             let Answer { verdict, .. } = protocol::answer(&line)?;
@@ -95,10 +95,10 @@ impl Client {
         &self.name
     }
 
-    /// Sends a request. Returns its number, which the answer repeats. The run executes it within [`PATIENCE`] or
+    /// Sends a request. Returns its number, which the answer repeats. The run executes it within [`ANSWER_LIMIT`] or
     /// discards it.
     pub fn send(&mut self, line: &str) -> Result<u32, ClientError> {
-        self.send_within(PATIENCE, line)
+        self.send_within(ANSWER_LIMIT, line)
     }
 
     /// Like [`Client::send`], for a request that is discarded unless the run executes it within the time `left`.
@@ -145,13 +145,13 @@ impl Client {
 
     /// Sends a request and waits for its answer. A refusal by the run is the inner result.
     pub fn ask(&mut self, line: &str) -> Result<Result<String, String>, ClientError> {
-        self.ask_within(PATIENCE, line)
+        self.ask_within(ANSWER_LIMIT, line)
     }
 
     /// Like [`Client::ask`], for a request that is discarded unless the run executes it within the time `left`.
     pub fn ask_within(&mut self, left: Duration, line: &str) -> Result<Result<String, String>, ClientError> {
         let number = self.send_within(left, line)?;
-        let patience = if line.trim_start().starts_with("load ") { LOAD_PATIENCE } else { PATIENCE };
+        let patience = if line.trim_start().starts_with("load ") { LOAD_WAIT_LIMIT } else { ANSWER_LIMIT };
         let deadline = Instant::now() + patience;
         loop {
             let line = self.wait_for_line(deadline)?;

@@ -24,7 +24,7 @@ pub const GREETING: &str = "rcs-operator 2"; // and the version of the protocol
 /// Longest silence of a session that commands motion by hand. After it, the motion ends.
 pub const SILENCE: Duration = Duration::from_millis(250);
 /// Time for which a client waits for an answer. The run answers between two ticks, of which a second has 25.
-pub const PATIENCE: Duration = Duration::from_secs(1);
+pub const ANSWER_LIMIT: Duration = Duration::from_secs(1);
 pub const LONGEST: Duration = Duration::from_secs(10); // from now to the limit of a request
 const NAME: usize = 24; // greatest length of a name, bytes
 

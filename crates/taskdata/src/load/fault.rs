@@ -38,7 +38,7 @@ impl Fault {
             if store.origins.contain(at) {
                 return Scope::Record(at);
             }
-            let names = names_beside(at, &store.sources);
+            let names = nearby_names(at, &store.sources);
             let is_object = |name: &String| {
                 Name16::new(name).is_ok_and(|name| store.view().object_named(&name).is_some())
             };
@@ -102,7 +102,7 @@ fn line_at(at: At, sources: &[Source]) -> Option<&str> {
     source.text.get(begin..)?.lines().next()
 }
 
-fn names_beside(at: At, sources: &[Source]) -> Vec<String> {
+fn nearby_names(at: At, sources: &[Source]) -> Vec<String> {
     let index = usize::try_from(at.source).unwrap_or(usize::MAX);
     let Some(source) = sources.get(index) else { return Vec::new() };
     let (found, _) = blocks(index, source);

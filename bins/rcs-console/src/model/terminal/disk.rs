@@ -4,7 +4,7 @@ use interfaces::{ProcessId, operator::board_bit};
 use levels::ladder::Ladder;
 use taskdata::load::{BlockNumber, commands};
 
-use super::{library::AREAS, said, teach::Lesson, words::Interpreter};
+use super::{library::AREAS, said, teach::PoseLesson, words::Interpreter};
 
 impl Interpreter<'_> {
     /// `n EDIT`: the manual has a screen editor for it (IV.2.3).
@@ -19,7 +19,7 @@ impl Interpreter<'_> {
         let number = BlockNumber { offset: self.board.offset, number: self.pop("n TEACH name")? };
         let mut names = behind.iter().map(|name| (*name).to_owned());
         let name = names.next().ok_or("a name is missing: n TEACH name, or n TEACH name pose")?;
-        self.outcome.teaches = Some(Lesson { number, name, relative: names.next() });
+        self.outcome.teaches = Some(PoseLesson { number, name, relative: names.next() });
         Ok(behind.len())
     }
 

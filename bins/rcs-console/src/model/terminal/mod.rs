@@ -21,7 +21,7 @@ use taskdata::load::{BlockNumber, commands};
 use self::{
     editor::{Editor, EditorRequest},
     library::Library,
-    teach::Lesson,
+    teach::PoseLesson,
     words::{Interpreter, is_of_terminal},
 };
 use super::{Key, Model, Operating, Text, Tone, views::ShowWord};
@@ -191,7 +191,7 @@ impl Model {
     }
 
     /// Open the editor with the form of the recorded pose, or show the reason why it cannot be opened.
-    fn begin_lesson(&mut self, lesson: &Lesson) {
+    fn begin_lesson(&mut self, lesson: &PoseLesson) {
         if let Some(why) = self.cannot_edit() {
             self.answer = Some(why);
             return;

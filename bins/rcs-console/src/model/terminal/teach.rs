@@ -15,7 +15,7 @@ use crate::rcs_console::picture::Picture;
 const CELL: &str = "cell.toml"; // name of the cell description in a data directory
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Lesson {
+pub struct PoseLesson {
     pub number: BlockNumber,
     pub name: String,
     /// The named pose to which the movetable is relative; `None` for a pose.
@@ -27,7 +27,7 @@ fn recorded(picture: &Picture) -> Option<Pose> {
     picture.memory.changing_pose(number).copied()
 }
 
-impl Lesson {
+impl PoseLesson {
     /// Open the editor with the form. Fails if no pose was recorded, the robot cannot reach it, or the block has no
     /// room.
     pub fn begin(&self, picture: &Picture, directory: &Path, sources: &[Source]) -> Result<Editor, String> {

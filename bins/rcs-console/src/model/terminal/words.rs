@@ -5,7 +5,7 @@ use interfaces::{ProcessId, operator::Variable};
 use levels::ladder::Ladder;
 use taskdata::load::{BlockNumber, source::BLOCK_LINES};
 
-use super::{BOARDS, Board, Mode, library::Library, pointer::target, said, teach::Lesson};
+use super::{BOARDS, Board, Mode, library::Library, pointer::target, said, teach::PoseLesson};
 use crate::rcs_console::{
     model::{
         Text, Tone,
@@ -52,7 +52,7 @@ pub struct Outcome {
     pub asks: Vec<String>,
     pub said: Vec<Text>,
     pub edits: Option<BlockNumber>,
-    pub teaches: Option<Lesson>,
+    pub teaches: Option<PoseLesson>,
     pub listed: Option<BlockNumber>,
 }
 

@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use couplers::{Fallback, Kind, MOST_IN, MOST_OUT, OutWords, Plan, Span};
 use diagnostics::{
     Problem, Problems,
-    toml::{StandIns, join},
+    toml::{Defaulted, join},
 };
 use rcs_core::Plain as _;
 
@@ -33,7 +33,7 @@ pub(super) struct Devices {
 }
 
 impl Devices {
-    pub(super) fn of(sheet: &Sheet, stand_ins: &StandIns, problems: &mut Problems) -> Self {
+    pub(super) fn of(sheet: &Sheet, stand_ins: &Defaulted, problems: &mut Problems) -> Self {
         let mut list: Vec<Device> = Vec::new();
         for (name, form) in &sheet.device {
             let path = join("device", name);

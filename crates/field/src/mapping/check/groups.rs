@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use diagnostics::{
     Problems,
-    toml::{StandIns, join},
+    toml::{Defaulted, join},
 };
 use interfaces::point::{Group, Input, Kind, Output, Point, Station};
 
@@ -20,7 +20,7 @@ const WITHOUT: [Presence; 2] = [Presence::Absent, Presence::Simulated];
 /// How each group is present, in the order of [`Group::ALL`].
 pub(super) fn presence(
     sheet: &Sheet,
-    stand_ins: &StandIns,
+    stand_ins: &Defaulted,
     problems: &mut Problems,
 ) -> [Presence; Group::ALL.len()] {
     let known = Group::ALL.map(Group::name);
@@ -66,7 +66,7 @@ pub(super) fn presence(
 }
 
 /// What keeps a part gripped while the outputs of a group are off, as the file says.
-pub(super) fn holds(sheet: &Sheet, stand_ins: &StandIns, problems: &mut Problems) -> Vec<(Group, Holds)> {
+pub(super) fn holds(sheet: &Sheet, stand_ins: &Defaulted, problems: &mut Problems) -> Vec<(Group, Holds)> {
     let groups = HOLDERS.map(Group::name);
     let words = Holds::ALL.map(Holds::name);
     let mut all = Vec::new();

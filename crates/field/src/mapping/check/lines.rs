@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use diagnostics::{
     Problem, Problems,
-    toml::{StandIns, element, join},
+    toml::{Defaulted, element, join},
 };
 
 use super::{
@@ -21,7 +21,7 @@ const VERBS: [&str; 4] = ["vise", "machine", "drum", "tray"];
 
 pub(super) fn lines(
     sheet: &Sheet,
-    stand_ins: &StandIns,
+    stand_ins: &Defaulted,
     inputs: &[InPoint],
     outputs: &[OutPoint],
     problems: &mut Problems,

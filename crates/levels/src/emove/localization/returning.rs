@@ -50,7 +50,7 @@ const RESTING_RADIANS: f64 = 45.0 * core::f64::consts::PI / 180.0; // 45 degrees
 const NEST_INCHES: f64 = 2.0; // within which a robot leaves a nest along its approach line
 const NEST_RADIANS: f64 = 10.0 * core::f64::consts::PI / 180.0; // 10 degrees
 
-pub(in crate::emove) struct Origination {
+pub(in crate::emove) struct StartPlace {
     pub place: Option<RobotPlace>,
     pub way: Option<Way>,    // an interrupted path, instead of a place
     pub offset: EmoveOffset, // the robot's offset from its place
@@ -202,13 +202,13 @@ impl Localization {
         &self,
         holding: Holding,
         inputs: &EmoveInputs<'_>,
-    ) -> Result<Origination, Planning> {
+    ) -> Result<StartPlace, Planning> {
         let data = inputs.data;
         let nowhere =
-            Origination { place: None, way: None, offset: EmoveOffset::There, rejoin: None, is_out: false };
+            StartPlace { place: None, way: None, offset: EmoveOffset::There, rejoin: None, is_out: false };
         let present = present_frame(inputs.memory);
         if let Some(place) = self.place() {
-            return Ok(Origination {
+            return Ok(StartPlace {
                 place: Some(*place),
                 offset: offset(place, present.as_ref(), holding, inputs),
                 ..nowhere
@@ -216,15 +216,15 @@ impl Localization {
         }
         if let Some(way) = self.on_path(inputs) {
             let rejoin = present.filter(|_| way.by_hand).and_then(|present| to_way(&present, &way, data));
-            return Ok(Origination { way: Some(way), rejoin, ..nowhere });
+            return Ok(StartPlace { way: Some(way), rejoin, ..nowhere });
         }
         let present = present.unwrap_or_else(Frame::identity);
         let (left, way) = (self.place, self.way);
         let resting = resting_place(&present, data);
         let out = left.and_then(|nest| out_of(&nest, &present, data));
-        let back = Origination { offset: EmoveOffset::Moved, ..nowhere };
+        let back = StartPlace { offset: EmoveOffset::Moved, ..nowhere };
         let to_place =
-            |place: RobotPlace, rejoin| Origination { place: Some(place), rejoin: Some(rejoin), ..back };
+            |place: RobotPlace, rejoin| StartPlace { place: Some(place), rejoin: Some(rejoin), ..back };
         let parameters = |at: &RobotPlace| parameters_at(at, data).ok_or(Planning::NoSpeed);
         let record = &self.track;
         match (returning((), &self.lost(resting.is_some(), out.is_some(), holding, inputs)).action, left, way)
@@ -240,7 +240,7 @@ impl Localization {
                     begins.and_then(|begins| on_segment(&begins, &way, data)).ok_or(Planning::NoStart)?;
                 let back = Rejoin::to(Pose::from_frame(&foot.0), route_of(&way, data)?.stop);
                 let rejoin = Rejoin { track: record.count, ..back };
-                Ok(Origination { way: Some(way), rejoin: Some(rejoin), ..nowhere })
+                Ok(StartPlace { way: Some(way), rejoin: Some(rejoin), ..nowhere })
             }
             (Return::Straight, ..) => {
                 let place = resting.ok_or(Planning::NoStart)?;
@@ -249,7 +249,7 @@ impl Localization {
             (Return::Out, Some(nest), _) => {
                 let points = out.ok_or(Planning::NoStart)?.map(|frame| Some(Pose::from_frame(&frame)));
                 let rejoin = Rejoin { track: 0, points, parameters: parameters(&nest)? };
-                Ok(Origination { is_out: true, ..to_place(nest, rejoin) })
+                Ok(StartPlace { is_out: true, ..to_place(nest, rejoin) })
             }
             (Return::Retrace | Return::Out | Return::Refuse, ..) => Err(Planning::NoStart),
         }

@@ -23,10 +23,10 @@ use super::route::{Ahead, EmoveGoal, EmoveLeg, LegGoal, Planning, Route, slower}
 use crate::emove::{
     localization::{
         path::route_of,
-        returning::{Origination, settle_at},
+        returning::{StartPlace, settle_at},
     },
     robot_place::{is_same_goal, is_same_pose},
-    tables::resume::{EmoveRobot, GoalOf, LegNow, MotionBeginning, MotionStart, ReturnPath, resume},
+    tables::resume::{CurrentLeg, EmoveRobot, GoalOf, MotionBeginning, MotionStart, ReturnPath, resume},
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -121,7 +121,7 @@ fn from_outside(from: &RobotPlace, to: &RobotPlace, data: &TaskData<'_>) -> Resu
     Ok(Route { commanded: route.depart_points(data), ..route })
 }
 
-fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> MotionStart {
+fn start(goal: &RobotPlace, begin: &StartPlace, data: &TaskData<'_>) -> MotionStart {
     let robot = match (&begin.place, &begin.way) {
         (Some(_), _) => EmoveRobot::AtPlace,
         (None, Some(_)) => EmoveRobot::OnWay,
@@ -130,7 +130,7 @@ fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> MotionS
     let is_here = begin.place.is_some_and(|from| is_same_pose(&from, goal));
     let Some(way) = begin.way.as_ref().filter(|_| robot == EmoveRobot::OnWay) else {
         let goal = if is_here { GoalOf::Place } else { GoalOf::Another };
-        return MotionStart { robot, goal, back: ReturnPath::Free, leg: LegNow::Later };
+        return MotionStart { robot, goal, back: ReturnPath::Free, leg: CurrentLeg::Later };
     };
     let route = route_of(way, data).unwrap_or_default();
     let departs = way.next < route.depart_points(data);
@@ -144,7 +144,7 @@ fn start(goal: &RobotPlace, begin: &Origination, data: &TaskData<'_>) -> MotionS
         robot,
         goal: if is_same_goal(&way.to, goal) { GoalOf::Way } else { GoalOf::Another },
         back: if closed { ReturnPath::Closed } else { ReturnPath::Free },
-        leg: if departs { LegNow::Depart } else { LegNow::Later },
+        leg: if departs { CurrentLeg::Depart } else { CurrentLeg::Later },
     }
 }
 
@@ -153,7 +153,7 @@ impl Flight {
     pub(in crate::emove) fn plan(
         goal: &EmoveGoal,
         to: &RobotPlace,
-        begin: &Origination,
+        begin: &StartPlace,
         data: &TaskData<'_>,
     ) -> Result<Self, Planning> {
         let rejoin = begin.rejoin;

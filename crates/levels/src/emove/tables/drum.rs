@@ -53,7 +53,7 @@ pub struct AtTheDrum {
 
 /// The decision on an unfinished tool command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
-pub enum Belief {
+pub enum DrumDecision {
     /// The tool command is still unfinished.
     Keep,
     /// The robot has left the drum.
@@ -66,7 +66,7 @@ decision_table! {
     /// DRUM: a robot moved away from the drum, as by the joystick box, has left its tool command. Fingers that have
     /// closed on a tool in the drum place the robot there, even if the command was interrupted. Preprocess consults
     /// this table while a tool command is unfinished. Headers do not name its rows.
-    pub DRUM: fn drum(self::AtTheDrum) -> self::Belief {
+    pub DRUM: fn drum(self::AtTheDrum) -> self::DrumDecision {
         1: at: Off                                                             => Leave;
         2: at: Inside, tool: Grasped, outcome: Idle | Done | Error | Joystick  => Stand;
         3: at: Inside, tool: Grasped, outcome: Executing                       => Keep;

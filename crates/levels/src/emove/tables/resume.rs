@@ -35,7 +35,7 @@ pub enum ReturnPath {
 
 /// The robot's leg on its way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum LegNow {
+pub enum CurrentLeg {
     /// The depart leg.
     Depart,
     /// A leg after it.
@@ -51,7 +51,7 @@ pub struct MotionStart {
     /// The return along the way.
     pub back: ReturnPath,
     /// The leg on the way.
-    pub leg: LegNow,
+    pub leg: CurrentLeg,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]

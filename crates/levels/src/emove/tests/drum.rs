@@ -17,7 +17,7 @@ use super::{
 use crate::{
     emove::tables::{
         AtDrum,
-        drum::{AtTheDrum, Belief, EmoveTool, drum},
+        drum::{AtTheDrum, DrumDecision, EmoveTool, drum},
     },
     execution::Outcome,
 };
@@ -588,12 +588,12 @@ fn drum_table_decides_the_interrupted_tool_command() {
         (decision.row, decision.action)
     };
     for outcome in [Outcome::Idle, Outcome::Done, Outcome::Error, Outcome::Joystick] {
-        assert_eq!(row(AtDrum::Off, EmoveTool::Grasped, outcome), (1, Belief::Leave));
-        assert_eq!(row(AtDrum::Inside, EmoveTool::Grasped, outcome), (2, Belief::Stand));
-        assert_eq!(row(AtDrum::Inside, EmoveTool::Loose, outcome), (4, Belief::Keep));
+        assert_eq!(row(AtDrum::Off, EmoveTool::Grasped, outcome), (1, DrumDecision::Leave));
+        assert_eq!(row(AtDrum::Inside, EmoveTool::Grasped, outcome), (2, DrumDecision::Stand));
+        assert_eq!(row(AtDrum::Inside, EmoveTool::Loose, outcome), (4, DrumDecision::Keep));
     }
-    assert_eq!(row(AtDrum::Inside, EmoveTool::Grasped, Outcome::Executing), (3, Belief::Keep));
+    assert_eq!(row(AtDrum::Inside, EmoveTool::Grasped, Outcome::Executing), (3, DrumDecision::Keep));
     for at in [AtDrum::Before, AtDrum::Entering, AtDrum::Sliding, AtDrum::Clear] {
-        assert_eq!(row(at, EmoveTool::Grasped, Outcome::Done), (5, Belief::Keep));
+        assert_eq!(row(at, EmoveTool::Grasped, Outcome::Done), (5, DrumDecision::Keep));
     }
 }

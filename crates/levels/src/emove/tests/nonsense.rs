@@ -18,7 +18,7 @@ const LOCATIONS: [&str; 6] = ["", "HOME", "BENCH", "HOLSTER-R", "HOLSTER-C", "TO
 
 /// The inputs of a tick: a command or none, and the outputs of each neighbour.
 #[derive(Clone, Debug)]
-struct Nonsense {
+struct InvalidCommands {
     command: Option<(u8, usize, i32, usize, u8)>,
     prim: (u8, u8, bool, u8),
     ring: (u8, u8, bool),
@@ -28,7 +28,7 @@ struct Nonsense {
     at: usize,
 }
 
-fn nonsense() -> impl Strategy<Value = Nonsense> {
+fn nonsense() -> impl Strategy<Value = InvalidCommands> {
     let command = (0_u8..17, 0_usize..6, -1_i32..3, 0_usize..6, 0_u8..5);
     (
         prop::option::weighted(0.2, command),
@@ -39,7 +39,7 @@ fn nonsense() -> impl Strategy<Value = Nonsense> {
         prop::bool::weighted(0.9),
         0_usize..6,
     )
-        .prop_map(|(command, prim, ring, grip, jaws, echoes, at)| Nonsense {
+        .prop_map(|(command, prim, ring, grip, jaws, echoes, at)| InvalidCommands {
             command,
             prim,
             ring,
@@ -50,7 +50,7 @@ fn nonsense() -> impl Strategy<Value = Nonsense> {
         })
 }
 
-fn bring(bench: &mut Bench, tick: &Nonsense) {
+fn bring(bench: &mut Bench, tick: &InvalidCommands) {
     if let Some((verb, object, grip, location, gripper)) = tick.command {
         let verb = EmoveVerb::from_code(verb).unwrap();
         bench.send((verb, OBJECTS[object], grip, LOCATIONS[location], gripper));

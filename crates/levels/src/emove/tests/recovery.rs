@@ -16,7 +16,7 @@ use super::{
     doubles::DeliveryFault,
 };
 use crate::emove::tables::resume::{
-    EmoveRobot, GoalOf, LegNow, MotionBeginning, MotionStart, ReturnPath, resume,
+    CurrentLeg, EmoveRobot, GoalOf, MotionBeginning, MotionStart, ReturnPath, resume,
 };
 
 pub const SCENARIOS: &[fn()] = &[
@@ -449,11 +449,11 @@ fn motion_begins_at_the_place_of_the_robot() {
     };
     for &goal in GoalOf::ALL {
         for &back in ReturnPath::ALL {
-            for &leg in LegNow::ALL {
+            for &leg in CurrentLeg::ALL {
                 let another = match (leg, back) {
-                    (LegNow::Depart, _) => (5, MotionBeginning::GoOut),
-                    (LegNow::Later, ReturnPath::Free) => (6, MotionBeginning::GoBack),
-                    (LegNow::Later, ReturnPath::Closed) => (7, MotionBeginning::RefuseBack),
+                    (CurrentLeg::Depart, _) => (5, MotionBeginning::GoOut),
+                    (CurrentLeg::Later, ReturnPath::Free) => (6, MotionBeginning::GoBack),
+                    (CurrentLeg::Later, ReturnPath::Closed) => (7, MotionBeginning::RefuseBack),
                 };
                 let on_way = if goal == GoalOf::Way { (4, MotionBeginning::GoOn) } else { another };
                 let here = goal == GoalOf::Place;

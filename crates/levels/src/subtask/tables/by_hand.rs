@@ -14,7 +14,7 @@ pub enum Regripping {
 
 /// The robot relative to the pedestal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum RobotThere {
+pub enum RobotAtPedestal {
     /// The robot is clear of the pedestal.
     Clear,
     /// The robot is at the pedestal, or not known to be clear, and does not hold the part.
@@ -46,7 +46,7 @@ pub struct ManualOrder {
     /// The part in the pedestal's hand.
     pub part: PedestalLoad,
     /// The robot relative to the pedestal.
-    pub robot: RobotThere,
+    pub robot: RobotAtPedestal,
     /// The person's statement about the part.
     pub by_hand: HeldByHand,
 }

@@ -10,7 +10,7 @@ use interfaces::{
 use rcs_core::name::Name16;
 
 use super::{
-    FROM_TRAY, HOME, LET_GO, NOWHERE, PAUSE, SAFE, SHUTDOWN, STARTUP, TRANSFER, TRANSFER_AND_STAY,
+    FROM_TRAY, HOME, NOWHERE, PAUSE, POSITION_RELEASE, SAFE, SHUTDOWN, STARTUP, TRANSFER, TRANSFER_AND_STAY,
     bench::{Answer, Bench, FINISHED},
     error,
 };
@@ -273,7 +273,7 @@ fn acquire_of_an_object_taken_elsewhere_sends_no_update() {
     assert_eq!(told(&mut bench, FROM_SECTOR_2), ["H_ROBOT"]);
 }
 
-const LET_GO_WITHOUT_NAME: &str = "POSITION -- 0 -- 0 0 PFIXTURE 0 -- 0";
+const POSITION_RELEASE_WITHOUT_NAME: &str = "POSITION -- 0 -- 0 0 PFIXTURE 0 -- 0";
 const TO_FIXTURE: &str = "TRANSFER PART +1 SAFE 0 +1 PFIXTURE 0 -- 0";
 const OTHER: &str = "TRANSFER BAR +1 PFIXTURE 0 +1 UNIT_1 1 SAFE 0";
 
@@ -302,7 +302,7 @@ fn let_go_while_replaced(line: &str, by: &str) -> Vec<(Bench<'static>, Vec<Strin
 /// The part is released already when the POSITION is repeated. The update is sent nevertheless.
 #[test]
 fn repeated_position_updates_the_object_it_released() {
-    for line in [LET_GO, LET_GO_WITHOUT_NAME] {
+    for line in [POSITION_RELEASE, POSITION_RELEASE_WITHOUT_NAME] {
         for by in [PAUSE, NOWHERE, HOME] {
             let mut untold = 0;
             for (mut bench, mut positions) in let_go_while_replaced(line, by) {
@@ -319,7 +319,7 @@ fn repeated_position_updates_the_object_it_released() {
 /// The command is not repeated, so the next command about another object, or a STARTUP, sends the update first.
 #[test]
 fn next_command_updates_an_object_released_before() {
-    for line in [LET_GO, LET_GO_WITHOUT_NAME, TO_FIXTURE] {
+    for line in [POSITION_RELEASE, POSITION_RELEASE_WITHOUT_NAME, TO_FIXTURE] {
         for (next, then) in [(OTHER, &["UNIT_1"][..]), (STARTUP, &[])] {
             let mut untold = 0;
             for (mut bench, mut positions) in let_go_while_replaced(line, PAUSE) {
@@ -420,7 +420,7 @@ fn object_taken_by_an_abandoned_command_is_updated() {
         if earlier {
             perform(&mut bench, FROM_TRAY, "A");
             bench.set(1, "PART", "PFIXTURE");
-            perform(&mut bench, LET_GO, "A");
+            perform(&mut bench, POSITION_RELEASE, "A");
             assert_eq!(parts(&mut bench), [was("A", "H_ROBOT", 0), was("A", "PFIXTURE", 0)]);
         }
         order(&mut bench, line, "B");
@@ -435,7 +435,7 @@ fn object_taken_by_an_abandoned_command_is_updated() {
             if below.held.object().is_some() {
                 held += 1;
                 bench.set(1, "PART", "PFIXTURE");
-                perform(&mut bench, LET_GO, "B");
+                perform(&mut bench, POSITION_RELEASE, "B");
                 told.extend(parts(&mut bench));
                 told.retain(|told| *told != was("B", "H_ROBOT", 0));
                 assert_eq!(told, [was("B", "PFIXTURE", 0)], "{case}");
@@ -466,7 +466,7 @@ fn lost_part_is_not_updated_for_the_next_one() {
     until(&mut bench, |below| below.held.object().is_some());
     assert_eq!(bench.run(PAUSE), FINISHED);
     bench.set(1, "PART", "PFIXTURE");
-    perform(&mut bench, LET_GO, "B");
+    perform(&mut bench, POSITION_RELEASE, "B");
     assert_eq!(parts(&mut bench), [was("B", "PFIXTURE", 0)]);
     const NEXT: &str = "TRANSFER PART +1 PFIXTURE 0 +1 SAFE 0 -- 0";
     for is_sent_before in [false, true] {
@@ -514,7 +514,7 @@ fn parts_of_one_name_keep_their_serial_numbers() {
         bench.wait(2);
         assert_eq!(bench.run(PAUSE), FINISHED);
         bench.set(1, "PART", "PFIXTURE");
-        perform(&mut bench, LET_GO, "A");
+        perform(&mut bench, POSITION_RELEASE, "A");
         assert_eq!(parts(&mut bench), [was("A", "PFIXTURE", 0)], "{next}");
     }
     for next in ["MOVE PART +1 SAFE 0 +1 HOME 0 -- 0", "ACQUIRE PART +1 UNIT_1 1 0 -- 0 -- 0"] {
@@ -522,7 +522,7 @@ fn parts_of_one_name_keep_their_serial_numbers() {
         perform(&mut bench, FROM_TRAY, "A");
         perform(&mut bench, next, "B");
         bench.set(1, "PART", "PFIXTURE");
-        perform(&mut bench, LET_GO, "A");
+        perform(&mut bench, POSITION_RELEASE, "A");
         assert_eq!(parts(&mut bench), [was("A", "H_ROBOT", 0), was("A", "PFIXTURE", 0)], "{next}");
     }
     // The held part needs no update, and another part of its name is in the tray.
@@ -534,7 +534,7 @@ fn parts_of_one_name_keep_their_serial_numbers() {
     bench.wait(2);
     assert_eq!(bench.run(PAUSE), FINISHED);
     bench.set(1, "PART", "PFIXTURE");
-    perform(&mut bench, LET_GO, "A");
+    perform(&mut bench, POSITION_RELEASE, "A");
     assert_eq!(parts(&mut bench), []);
     // A replaced command released the first part, and the next one takes another part of its name.
     for next in ["TRANSFER PART +1 UNIT_1 1 +1 SAFE 0 -- 0", "TRANSFER PART +1 PFIXTURE 0 +1 SAFE 0 -- 0"] {
@@ -582,7 +582,7 @@ fn unreadable_gripper_keeps_serial_number_and_origin() {
         begin(&mut bench, "TRANSFER PART +1 UNIT_1 1 +1 SAFE 0 -- 0", "B");
         bench.world.subtask.outputs.status.held = held;
         bench.set(1, "PART", "PFIXTURE");
-        perform(&mut bench, LET_GO, "A");
+        perform(&mut bench, POSITION_RELEASE, "A");
         assert_eq!(parts(&mut bench), [was("A", "PFIXTURE", 0)], "{unreadable:?}");
     }
 }
@@ -637,7 +637,7 @@ fn refixture_sends_pending_updates_first() {
     order(&mut bench, FROM_TRAY, "A");
     assert_eq!(bench.finish(), error(Reason::DataBase));
     bench.set(1, "PART", "PFIXTURE");
-    order(&mut bench, LET_GO, "A");
+    order(&mut bench, POSITION_RELEASE, "A");
     assert_eq!(bench.finish(), error(Reason::DataBase));
     const REFIXTURE: &str = "REFIXTURE PART +1 UNIT_1 2 +2 PFIXTURE 0 -- 0";
     assert_eq!(bench.run(REFIXTURE), error(Reason::DataBase));
@@ -671,7 +671,7 @@ fn held_part_keeps_its_update_during_a_refused_transfer() {
     bench.wait(3);
     assert_eq!(bench.run(PAUSE), FINISHED);
     bench.set(1, "PART", "PFIXTURE");
-    assert_eq!(told(&mut bench, LET_GO), ["PFIXTURE"]);
+    assert_eq!(told(&mut bench, POSITION_RELEASE), ["PFIXTURE"]);
 }
 
 /// V.4.1 requires updates of moves from and to the MBD only.

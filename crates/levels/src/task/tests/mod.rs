@@ -42,7 +42,7 @@ const SAFE: &str = "MOVE -- 0 -- 0 0 SAFE 0 -- 0";
 const TRANSFER: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0";
 const TRANSFER_AND_STAY: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 -- 0";
 const FROM_TRAY: &str = "MOVE PART +1 UNIT_1 2 +1 PFIXTURE 0 -- 0";
-const LET_GO: &str = "POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0";
+const POSITION_RELEASE: &str = "POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0";
 
 #[test]
 fn command_is_known_by_its_first_ten_characters() {
@@ -99,7 +99,7 @@ fn position_releases_the_held_object_first() {
     let mut bench = Bench::default();
     for held in ["BAR", "PART"] {
         bench.set(1, held, "PFIXTURE");
-        assert_eq!(bench.run(LET_GO), FINISHED);
+        assert_eq!(bench.run(POSITION_RELEASE), FINISHED);
         assert_eq!(bench.sent(), ["RELEASE", ">POSITION"]);
     }
     assert_eq!(bench.run("POSITION -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);

@@ -11,8 +11,8 @@ use interfaces::{
 use rcs_core::name::{Name10, Name16};
 
 use super::{
-    ACQUIRE, FROM_TRAY, HOME, INSERT, LET_GO, NOWHERE, PAUSE, RELEASE, REMOVE, SHUTDOWN, STARTUP, TRANSFER,
-    TRANSFER_AND_STAY,
+    ACQUIRE, FROM_TRAY, HOME, INSERT, NOWHERE, PAUSE, POSITION_RELEASE, RELEASE, REMOVE, SHUTDOWN, STARTUP,
+    TRANSFER, TRANSFER_AND_STAY,
     bench::{Answer, Bench, FINISHED},
     error,
 };
@@ -33,7 +33,7 @@ pub(super) const SCENARIOS: &[fn()] = &[
 ];
 
 const REGRIP: &str = "TRANSFER PART +1 PFIXTURE 0 -1 UNIT_1 2 SAFE 0";
-const LET_GO_BY_DESTINATION: &str = "POSITION PART 0 -- 0 +1 PFIXTURE 0 -- 0";
+const POSITION_RELEASE_BY_DESTINATION: &str = "POSITION PART 0 -- 0 +1 PFIXTURE 0 -- 0";
 
 fn moving_bench() -> Bench<'static> {
     let mut bench = Bench::connected();
@@ -49,7 +49,7 @@ fn is_under_way(bench: &Bench<'_>) -> bool {
 
 #[test]
 fn new_command_stops_the_running_one_before_it_is_answered() {
-    for line in [PAUSE, HOME, NOWHERE, STARTUP, SHUTDOWN, TRANSFER, LET_GO, ACQUIRE] {
+    for line in [PAUSE, HOME, NOWHERE, STARTUP, SHUTDOWN, TRANSFER, POSITION_RELEASE, ACQUIRE] {
         let mut bench = Bench::default();
         bench.world.data_system.answer = Answer::After(2);
         bench.command(TRANSFER);
@@ -310,7 +310,7 @@ fn release_requires_a_known_way_out() {
     for (at, reason) in [("", Reason::UnknownStart), ("HOME", Reason::NoTrajectory)] {
         let mut bench = Bench::default();
         bench.set(1, "PART", at);
-        assert_eq!(bench.run(LET_GO), error(reason), "{at}");
+        assert_eq!(bench.run(POSITION_RELEASE), error(reason), "{at}");
         assert!(bench.sent().is_empty());
     }
 }
@@ -336,7 +336,7 @@ const STAY_AT_HOME: &str = "POSITION -- 0 -- 0 0 HOME 0 -- 0";
 fn position_at_a_vise_releases_only_a_clamped_or_confirmed_part() {
     for held in [part(), Holding::Something, Holding::NotKnown] {
         // Hold-and-seat: the command names an object at the fixture (VIII.2).
-        assert_eq!(brought(held, "PFIXTURE").run(LET_GO), FINISHED, "{held:?}");
+        assert_eq!(brought(held, "PFIXTURE").run(POSITION_RELEASE), FINISHED, "{held:?}");
     }
     assert_eq!(brought(part(), "PFIXTURE").run(STAY_AT_FIXTURE), error(Reason::NotClamped));
     for clamping in ["HOME", "PFIXTURE"] {
@@ -420,7 +420,7 @@ fn updates(bench: &Bench<'_>) -> Vec<(String, i32)> {
 /// The robot arrives before the Data System answers.
 #[test]
 fn position_waits_for_its_update() {
-    for seat in [LET_GO, LET_GO_BY_DESTINATION] {
+    for seat in [POSITION_RELEASE, POSITION_RELEASE_BY_DESTINATION] {
         let mut bench = Bench::connected();
         assert_eq!(bench.run(FROM_TRAY), FINISHED);
         bench.world.data_system.answer = Answer::After(100);
@@ -433,7 +433,7 @@ fn position_waits_for_its_update() {
 
 #[test]
 fn release_updates_the_database() {
-    for seat in [LET_GO, LET_GO_BY_DESTINATION] {
+    for seat in [POSITION_RELEASE, POSITION_RELEASE_BY_DESTINATION] {
         let mut bench = Bench::connected();
         assert_eq!(bench.run(FROM_TRAY), FINISHED);
         assert_eq!(updates(&bench), [("H_ROBOT".to_owned(), 0)]);
@@ -454,7 +454,7 @@ fn release_updates_the_database() {
     // The database does not have this object as held by the robot.
     let mut bench = Bench::connected();
     assert_eq!(bench.run("MOVE PART +1 PFIXTURE 0 +1 PFIXTURE 0 -- 0"), FINISHED);
-    assert_eq!(bench.run(LET_GO), FINISHED);
+    assert_eq!(bench.run(POSITION_RELEASE), FINISHED);
     assert!(updates(&bench).is_empty());
 }
 
@@ -463,7 +463,7 @@ fn owing_two(trouble: Answer) -> Bench<'static> {
     let mut bench = Bench::connected();
     bench.world.data_system.answer = trouble;
     bench.run(FROM_TRAY);
-    bench.run(LET_GO);
+    bench.run(POSITION_RELEASE);
     bench
 }
 
@@ -531,7 +531,7 @@ fn restarted_task_keeps_its_estimates() {
     // The carried object is still known.
     bench.restart();
     bench.step();
-    assert_eq!(bench.run(LET_GO), FINISHED);
+    assert_eq!(bench.run(POSITION_RELEASE), FINISHED);
     assert_eq!(updates(&bench), [("PFIXTURE".to_owned(), 0)]);
     // An update that is accepted after the restart was sent before it.
     let mut bench = Bench::connected();
@@ -571,7 +571,7 @@ fn unanswered_updates_are_sent_in_order() {
     bench.world.data_system.answer = Answer::Absent;
     bench.run(FROM_TRAY);
     bench.world.data_system.received.clear();
-    bench.command(LET_GO);
+    bench.command(POSITION_RELEASE);
     bench.until(|bench| !bench.world.data_system.received.is_empty());
     bench.world.data_system.answer = Answer::After(1);
     assert_eq!(bench.finish(), FINISHED);

@@ -23,7 +23,7 @@ use taskdata::load::job::{JobLine, Step};
 
 use super::{
     BegunStep, Hwsc, JobFailure, Outcome, Progress,
-    step::{later, spoken_of},
+    step::{is_action_of, later},
 };
 use crate::workstation::status::Status;
 
@@ -122,7 +122,7 @@ impl Hwsc {
     /// The position in the job, for an emulator that continues it later.
     #[must_use]
     pub fn place_in_job(&self) -> PlaceInJob {
-        let waits = |line: &&JobLine| self.later.iter().any(|later| spoken_of(later, line));
+        let waits = |line: &&JobLine| self.later.iter().any(|later| is_action_of(later, line));
         let after = |line: &&JobLine| matches!(line.step, Step::After { .. });
         let begun = self.steps.iter().take(self.current.saturating_sub(1)).rev().filter(after);
         let delayed = begun.take(16).enumerate().filter(|(_, line)| waits(line));

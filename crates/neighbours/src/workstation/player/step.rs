@@ -7,14 +7,14 @@ use taskdata::load::job::{JobLine, Step, Workstation as Action};
 use super::{BegunStep, Hwsc, JobFailure, Outcome, PAUSE, Progress, Workstation, pause};
 
 #[derive(Clone, Debug)]
-pub struct Later {
+pub struct DelayedAction {
     pub ticks: u64, // from the command to the action
     pub action: Action,
     pub line: String,        // without `after` and the ticks
     pub since: Option<Tick>, // when the command was sent
 }
 
-impl Later {
+impl DelayedAction {
     pub fn is_due(&self, tick: Tick) -> bool {
         self.since.is_some_and(|since| tick.since(since) >= self.ticks)
     }
@@ -47,7 +47,7 @@ impl Hwsc {
         let refused = match step {
             Step::Command(command) => return self.send(tick, text, command),
             Step::Workstation(Action::Wait { .. }) => None,
-            Step::Workstation(action) => workstation.begin(&action, spoken(&text)).err(),
+            Step::Workstation(action) => workstation.begin(&action, without_prefix(&text)).err(),
             Step::After { .. } => {
                 self.later.extend(self.step_at(self.current).and_then(later));
                 None
@@ -100,17 +100,17 @@ impl Hwsc {
 }
 
 /// The delayed action of a line `** after`; `None` for other lines.
-pub(super) fn later(line: &JobLine) -> Option<Later> {
+pub(super) fn later(line: &JobLine) -> Option<DelayedAction> {
     let Step::After { ticks, action } = line.step else { return None };
-    let line = after(spoken(&line.text)).to_owned();
-    Some(Later { ticks: u64::from(ticks), action, line, since: None })
+    let line = after(without_prefix(&line.text)).to_owned();
+    Some(DelayedAction { ticks: u64::from(ticks), action, line, since: None })
 }
 
-pub(super) fn spoken_of(of: &Later, line: &JobLine) -> bool {
+pub(super) fn is_action_of(of: &DelayedAction, line: &JobLine) -> bool {
     later(line).is_some_and(|later| (later.ticks, &later.line) == (of.ticks, &of.line))
 }
 
-fn spoken(line: &str) -> &str {
+fn without_prefix(line: &str) -> &str {
     line.trim_start().trim_start_matches('*').trim_start()
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use diagnostics::{
     Problem,
-    toml::{Path, StandIns, element, join},
+    toml::{Defaulted, Path, element, join},
 };
 
 use crate::description::Points;
@@ -13,7 +13,7 @@ pub(super) struct Check<'s> {
     pub(super) problems: Vec<Problem>,
     /// Entries that must be more than 0: radii, lengths, weights.
     pub(super) positive: BTreeSet<Path>,
-    pub(super) stand_ins: &'s StandIns,
+    pub(super) stand_ins: &'s Defaulted,
 }
 
 impl Check<'_> {

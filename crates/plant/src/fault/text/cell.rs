@@ -7,7 +7,7 @@ use rcs_core::tick::TICK_S;
 use super::{Entry, Value};
 use crate::{
     description::CellDescription,
-    fault::{DeliveryFault, Disorder, Fault, What, When},
+    fault::{DeliveryFault, Disorder, Fault, FaultSubject, When},
 };
 
 /// A kind of fault, and its keys except those for the time.
@@ -71,7 +71,7 @@ pub(super) fn fault(entry: &Entry<'_>, kind: &Kind, cell: &CellDescription) -> R
     Ok(Fault { number: entry.number, what, when: when(entry)? })
 }
 
-fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, Box<Problem>> {
+fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<FaultSubject, Box<Problem>> {
     let form = entry.form;
     let by = |expected: &str, range: core::ops::RangeInclusive<f64>| {
         let by = form.by.ok_or_else(|| entry.says("needs `by`: how much"))?;
@@ -90,34 +90,34 @@ fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, B
         "slow" => Disorder::Slow(by("1 to 1000 ticks", 1.0..=MOST_LATE)? as u16),
         "offset" => Disorder::Offset(by("counts", -MOST_COUNTS..=MOST_COUNTS)?),
         "drift" => Disorder::Drift(by("counts a second", -MOST_COUNTS..=MOST_COUNTS)?),
-        "air-lost" => return Ok(What::AirLost),
-        "hydraulics-lost" => return Ok(What::HydraulicsLost),
-        "camera-blind" => return Ok(What::CameraBlind),
+        "air-lost" => return Ok(FaultSubject::AirLost),
+        "hydraulics-lost" => return Ok(FaultSubject::HydraulicsLost),
+        "camera-blind" => return Ok(FaultSubject::CameraBlind),
         "field-cut" => {
             let device =
                 form.device.clone().ok_or_else(|| entry.says("needs `device`: which of the mapping"))?;
-            return Ok(What::FieldCut(device));
+            return Ok(FaultSubject::FieldCut(device));
         }
-        "missing" => return Ok(What::Delivery(object()?, DeliveryFault::Missing)),
+        "missing" => return Ok(FaultSubject::Delivery(object()?, DeliveryFault::Missing)),
         "misplaced" => {
             let (x, y) = (aside("x", form.x)?, aside("y", form.y)?);
-            return Ok(What::Delivery(object()?, DeliveryFault::Misplaced { x, y }));
+            return Ok(FaultSubject::Delivery(object()?, DeliveryFault::Misplaced { x, y }));
         }
         "turned" => {
             form.angle.ok_or_else(|| entry.says("needs `angle`: how far, degrees"))?;
-            return Ok(What::Delivery(object()?, DeliveryFault::Turned(angle()?)));
+            return Ok(FaultSubject::Delivery(object()?, DeliveryFault::Turned(angle()?)));
         }
         "wrong-part" => {
             let other =
                 form.part.as_ref().ok_or_else(|| entry.says("needs `part`: what is delivered instead"))?;
-            return Ok(What::Delivery(
+            return Ok(FaultSubject::Delivery(
                 object()?,
                 DeliveryFault::WrongPart(part(entry, "part", other, cell)?),
             ));
         }
         _ => {
             let (x, y) = (aside("x", form.x)?, aside("y", form.y)?);
-            return Ok(What::PedestalMoved { x, y, angle: angle()? });
+            return Ok(FaultSubject::PedestalMoved { x, y, angle: angle()? });
         }
     };
     let name = form.sensor.as_ref().ok_or_else(|| entry.says("needs `sensor`: which"))?;
@@ -130,12 +130,12 @@ fn what(entry: &Entry<'_>, kind: &str, cell: &CellDescription) -> Result<What, B
             "is for converters: the camera can be off or intermittent, and there is the kind camera-blind";
         return Err(entry.says(message));
     }
-    Ok(What::Sensor(sensor, disorder))
+    Ok(FaultSubject::Sensor(sensor, disorder))
 }
 
 const ONE_OF: &str = "needs one of `sensor`, `valve` and `device`";
 
-fn stuck(entry: &Entry<'_>) -> Result<What, Box<Problem>> {
+fn stuck(entry: &Entry<'_>) -> Result<FaultSubject, Box<Problem>> {
     let form = entry.form;
     match (&form.valve, &form.device) {
         (Some(valve), None) => {
@@ -143,16 +143,16 @@ fn stuck(entry: &Entry<'_>) -> Result<What, Box<Problem>> {
             let found = Output::valves().find(|known| known.name() == valve);
             let named = found.ok_or_else(|| entry.unknown("valve", valve, &known()))?;
             match &form.value {
-                Some(Value::Word(word)) if word == "open" => Ok(What::Valve(named, true)),
-                Some(Value::Word(word)) if word == "closed" => Ok(What::Valve(named, false)),
+                Some(Value::Word(word)) if word == "open" => Ok(FaultSubject::Valve(named, true)),
+                Some(Value::Word(word)) if word == "closed" => Ok(FaultSubject::Valve(named, false)),
                 Some(value) => Err(entry.unlike("value", "\"open\" or \"closed\"", value)),
                 None => Err(entry.says("needs `value`: \"open\" or \"closed\" for a valve")),
             }
         }
         (None, Some(device)) => match device.as_str() {
             _ if form.value.is_some() => Err(entry.says("with a device takes no `value`")),
-            "lock-ring" => Ok(What::RingStuck),
-            "vise-jaw" => Ok(What::JawStuck),
+            "lock-ring" => Ok(FaultSubject::RingStuck),
+            "vise-jaw" => Ok(FaultSubject::JawStuck),
             _ => Err(entry.unknown("device", device, &DEVICES)),
         },
         _ => Err(entry.says(ONE_OF)),

@@ -59,7 +59,10 @@ fn agent(place: &Path, clock: ClockKind) -> (Agent, EndpointHandle) {
 
 fn agent_at(place: &Path, endpoint: Endpoint) -> (Agent, EndpointHandle) {
     let handle = endpoint.handle();
-    (Agent::new(endpoint, Outbox::open(&place.join("outbox")).unwrap()).with_patience(Duration::ZERO), handle)
+    (
+        Agent::new(endpoint, Outbox::open(&place.join("outbox")).unwrap()).with_reply_limit(Duration::ZERO),
+        handle,
+    )
 }
 
 fn command(number: u32, command: DataBaseVerb, position: &str) -> DataBaseCommand {
@@ -227,7 +230,7 @@ fn garbled_status_is_ignored_and_reported_with_its_content() {
 fn garbled_status_is_reported_once_during_the_wait() {
     let place = tempfile::tempdir().unwrap();
     let (agent, handle) = agent(place.path(), ClockKind::Fast);
-    let mut agent = agent.with_patience(Duration::MAX);
+    let mut agent = agent.with_reply_limit(Duration::MAX);
     let mut session = TestSession::begin(&handle);
     let server = thread::spawn(move || {
         let mut status_box = Mailbox::initialized(DATA_SYSTEM_STATUS);
@@ -264,7 +267,7 @@ fn stopped_endpoint_ends_the_wait_for_a_silent_server() {
     for clock in [ClockKind::Fast, ClockKind::Real] {
         let place = tempfile::tempdir().unwrap();
         let (agent, handle) = agent(place.path(), clock);
-        let mut agent = agent.with_patience(Duration::MAX);
+        let mut agent = agent.with_reply_limit(Duration::MAX);
         let stop_handle = agent.stop_handle();
         let server = serve(&handle, move |_, _| {
             stop_handle.stop();
@@ -291,7 +294,7 @@ fn interrupted_run_does_not_wait_for_a_silent_server() {
             tell.send(()).unwrap();
             Vec::new()
         });
-        let mut system = data_system::elsewhere(agent.with_patience(Duration::MAX), pace);
+        let mut system = data_system::elsewhere(agent.with_reply_limit(Duration::MAX), pace);
         system.step(Tick(1), &DataBaseCommand::default());
         let abort = command(1, DataBaseVerb::Abort, "");
         system.step(Tick(2), &abort);

@@ -10,7 +10,7 @@ use super::{
         lex::words_of_line,
         parser::is_integer,
         source::SourceLine,
-        verdict::{self, Before, Finding, Unfound, Verdict, find_location, find_object},
+        verdict::{self, Before, Finding, LookupProblem, Verdict, find_location, find_object},
     },
     JobLine, Step, Workstation,
     fields::{Field, Fields, Number},
@@ -272,8 +272,8 @@ impl Reader<'_, '_> {
     }
 
     /// Reports an unknown name, unless an unreadable entry may have it.
-    fn unfound(&mut self, unfound: Unfound, field: Field, sector: At) {
-        let Unfound { code, message, help, near, is_sector } = unfound;
+    fn unfound(&mut self, unfound: LookupProblem, field: Field, sector: At) {
+        let LookupProblem { code, message, help, near, is_sector } = unfound;
         if self.part.is_none_or(|part| part.is_slip(field.name.as_str(), near.as_deref())) {
             let at = if is_sector { sector } else { field.at };
             self.problems.push(Severity::Error, code, at, message, help);

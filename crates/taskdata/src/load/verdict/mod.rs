@@ -21,7 +21,7 @@ use crate::files::TaskData;
 
 use self::{needs::Needs, path::Route};
 
-pub(super) use names::{Unfound, find_location, find_object};
+pub(super) use names::{LookupProblem, find_location, find_object};
 pub use path::Standing;
 
 pub const TASK_COMMANDS: &[&str] = &[

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::files::{Location, LookupError, TaskData};
 
-pub(in crate::load) struct Unfound {
+pub(in crate::load) struct LookupProblem {
     pub code: &'static str,
     pub message: String,
     pub help: Option<String>,
@@ -19,14 +19,14 @@ pub(in crate::load) struct Unfound {
     pub is_sector: bool, // the sector is wrong, not the name
 }
 
-pub(in crate::load) fn find_object(data: &TaskData<'_>, name: &Name16) -> Result<(), Unfound> {
+pub(in crate::load) fn find_object(data: &TaskData<'_>, name: &Name16) -> Result<(), LookupProblem> {
     if data.object_named(name).is_some() {
         return Ok(());
     }
     let known: Vec<String> = data.objects.iter().map(|object| object.name.to_string()).collect();
     let near = nearest(name.as_str(), known.iter().map(String::as_str)).map(str::to_owned);
     let shown = if name.is_empty() { "--" } else { name.as_str() };
-    Err(Unfound {
+    Err(LookupProblem {
         code: "name.unknown",
         message: format!("no object is named {shown}"),
         help: near.as_ref().map(|near| format!("the nearest known name is {near}")),
@@ -40,7 +40,7 @@ pub(in crate::load) fn find_location(
     name: &Name16,
     sector: Option<i32>,
     object: Option<&Name16>,
-) -> Result<Location, Unfound> {
+) -> Result<Location, LookupProblem> {
     data.resolve_location(name, sector, object).map_err(|error| {
         let near = match error {
             LookupError::UnknownLocation { .. } => near_location(data, name),
@@ -51,7 +51,7 @@ pub(in crate::load) fn find_location(
             _ => near.as_ref().map(|near| format!("the nearest known name is {near}")),
         };
         let is_sector = matches!(error, LookupError::SectorRange { .. } | LookupError::NoSectors { .. });
-        Unfound { code: "job.location", message: error.to_string(), help, near, is_sector }
+        LookupProblem { code: "job.location", message: error.to_string(), help, near, is_sector }
     })
 }
 
@@ -61,7 +61,7 @@ fn near_location(data: &TaskData<'_>, name: &Name16) -> Option<String> {
     nearest(name.as_str(), known.iter().map(String::as_str)).map(str::to_owned)
 }
 
-impl Unfound {
+impl LookupProblem {
     fn of(self, name: &Name16, [field, sector]: [Field; 2]) -> Finding {
         let Self { code, message, help, near, is_sector } = self;
         let field = if is_sector { sector } else { field };
