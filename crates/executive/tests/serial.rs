@@ -168,7 +168,7 @@ fn unopenable_files_are_reported() {
     let open = |path: &Path| SerialLine::open(SerialSettings::new(path)).err();
     assert_eq!(open(Path::new("/dev/none")), Some(OpenError::Missing("/dev/none".into())));
     let null = open(Path::new("/dev/null"));
-    assert!(matches!(&null, Some(OpenError::Unusable { reason, .. }) if reason.contains("no terminal")));
+    assert!(matches!(&null, Some(OpenError::Unusable { reason, .. }) if reason.contains("not a terminal")));
     let peer = Peer::new();
     let line = peer.line();
     assert_eq!(open(&peer.path), Some(OpenError::Busy(peer.path.clone())));
