@@ -4,18 +4,17 @@ use super::Look;
 use crate::rcs_console::model::{Model, Tone};
 
 /// Keys of every console, and their effects.
-const KEYS: [(&str, &str); 11] = [
+const KEYS: [(&str, &str); 10] = [
     ("1 ... 7", "screens, from every screen; 2: the process at the cursor"),
     ("j k, arrows", "choose, scroll; PgUp PgDn by a page; Enter opens, Esc goes back"),
     ("[ ]  { }  g", "one tick, one second back or forward; a tick by its number"),
-    ("Home End", "first tick, last tick"),
+    ("Home End  ^L ^Z", "first tick, last tick; draw again; suspend until `fg`"),
     ("n N   t T", "next, previous change (on 2: of it); next, previous failure"),
     ("c   o", "first cause of the failure; log of an ended run at its cause"),
     ("p   a", "freeze the picture, the run continues; acknowledge the alarm"),
     ("on 2", "Tab=pane  /=filter  s=source  w=watch a field  v=watched fields"),
     ("on 3", "v=the points of field I/O and their couplers; /=filter"),
     ("on 4, 7", "v=drawing; Enter=do y=confirm s=leave out u=take back r=again"),
-    ("^L ^Z", "draw again; suspend until `fg`"),
 ];
 const OPERATOR: [(&str, &str); 5] = [
     ("Space", "velocity knob to 0: the robot ramps to rest; again: back"),

@@ -250,7 +250,7 @@ mod tests {
     fn part_without_a_step_is_refused_with_reasons() {
         let why = |wanted: &StepNeeds| chosen(wanted).err().unwrap_or_default().join("\n");
         assert!(why(&clevis(1.73, 3.5, 4.0)).contains("the jaws open for parts up to 3.00 in"));
-        assert!(why(&clevis(1.73, 2.56, 1.0)).contains("comes 0.40 in above the jaws"));
+        assert!(why(&clevis(1.73, 2.56, 1.0)).contains("extends 0.40 in above the jaws"));
         assert!(why(&clevis(1.0, 0.5, 3.0)).contains("in wide or wider, and this one has 0.500 in"));
     }
 }
