@@ -16,7 +16,7 @@ use interfaces::device::GroupHealth;
 use os_io::alloc::Counting;
 use plant::{Cell, CellDescription};
 use rcs_core::Plain as _;
-use runtime::{ClockKind, Ending, FieldConfig, LogTarget, Run, RunConfig, StartError};
+use runtime::{ClockKind, Ending, FieldConfig, LogTarget, OperatorAccess, Run, RunConfig, StartError};
 use tempfile::TempDir;
 
 #[global_allocator]
@@ -204,7 +204,13 @@ fn resumed_run_keeps_its_outputs_off_and_refuses_unknown_ones() {
     while run.last_tick().0 < 2 * TICKS && run.step() {}
     drop(run);
     assert_eq!(couplers.outputs_of(ARM), 0);
-    let resume = RunConfig { resume: Some(journal), ..couplers.config() };
+    // A resumed run needs an operator, who reaches it by the shared memory.
+    let resume = RunConfig {
+        resume: Some(journal),
+        shared_memory: true,
+        operator: OperatorAccess::Owner,
+        ..couplers.config()
+    };
     couplers.stations[ARM].with(|coupler| coupler.outputs_mut()[0] = TOOL_CLOSE);
     let error = couplers.refused(resume.clone()).to_string();
     assert!(error.contains("arm at 127.0.0.1:") && error.contains("tool.close on"), "{error}");
