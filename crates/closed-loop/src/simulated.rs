@@ -12,7 +12,7 @@ use taskdata::load::{Store, job::Reload};
 use crate::{
     ClosedLoop, RobotLine, Turn, World,
     contacts::{Commands, ContactCheck, ContactEvent},
-    field::{Desk, Field, FieldEvent},
+    field::{Field, FieldController, FieldEvent},
     truth::{Confirmation, Scene, TruthCheck, placement::PlacementCheck},
     workstation::SimulatedWorkstation,
 };
@@ -141,7 +141,7 @@ impl<L> ClosedLoop<L> {
             }
             _ => None,
         };
-        desk.into_iter().flat_map(Desk::orders)
+        desk.into_iter().flat_map(FieldController::orders)
     }
 
     /// The reports of the couplers at `now`, ns, determine the inputs of the tick. Does not allocate.

@@ -20,7 +20,7 @@ use executive::{
     alloc::Counting,
     boards::{
         Board, BoardData, Checked, Coordinator, Fingerprint, Lost, Member, MemberError,
-        coordinator::BoardEvent, lost::How, member::MemberEnd, pulse::RunCard,
+        coordinator::BoardEvent, lost::LossReason, member::MemberEnd, pulse::RunCard,
     },
     memory::{self, RunName},
     runner::Runner,
@@ -169,7 +169,7 @@ fn a_board_that_leaves_stops_the_pulse_and_is_named() {
         let Played { course, error: lost, .. } =
             play(coordinator, 500, |tick| leave.store(tick == Tick(400), Ordering::Relaxed));
         let lost: Lost = lost.expect("a board left");
-        assert_eq!((lost.board, lost.how), (Board::Eight, How::Left));
+        assert_eq!((lost.board, lost.how), (Board::Eight, LossReason::Left));
         // The flag is set while the board may still answer the previous tick.
         assert!((400..=401).contains(&lost.tick.0), "{lost}");
         assert_eq!(course.tick(), lost.tick.previous(), "the tick does not count");

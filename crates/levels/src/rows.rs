@@ -1,20 +1,20 @@
 //! The rows in the header of a process: which rows fired, when, and for which state variables.
 
 use interfaces::{Basis, Consulted, Decided, Header};
-use rcs_core::{Plain, header::BESIDE, name::Name16, table::Choice, tick::Tick};
+use rcs_core::{Plain, header::MAX_OTHER_ROWS, name::Name16, table::Choice, tick::Tick};
 
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Rows {
     pub tick: Tick, // the last tick in which the process was stepped
     pub decided: Option<Decided>,
     pub basis: Option<Basis>, // the tick and the state variables of `decided`
-    pub beside: [Option<Consulted>; BESIDE], // rows of other tables in that tick
+    pub beside: [Option<Consulted>; MAX_OTHER_ROWS], // rows of other tables in that tick
 }
 
 impl Rows {
     /// Start a tick: rows of other tables belong to an earlier one.
     pub fn begin(&mut self, tick: Tick) {
-        (self.tick, self.beside) = (tick, [None; BESIDE]);
+        (self.tick, self.beside) = (tick, [None; MAX_OTHER_ROWS]);
     }
 
     /// Record a row that has decided about the command. An earlier one of the same tick moves to the other rows.
@@ -89,7 +89,7 @@ mod tests {
         rows.begin(Tick(5));
         let header = rows.header(Tick(5), "");
         assert_eq!((header.age(), header.fired(), header.step), (Some(1), None, None));
-        assert_eq!(header.beside, [None; BESIDE]);
+        assert_eq!(header.beside, [None; MAX_OTHER_ROWS]);
     }
 
     #[test]
@@ -99,7 +99,7 @@ mod tests {
         rows.decide(&choice(3, 5, 1));
         rows.begin(Tick(6));
         rows.decide(&choice(4, 1, 2));
-        assert_eq!(rows.beside, [None; BESIDE], "rows of an earlier tick are not reported");
+        assert_eq!(rows.beside, [None; MAX_OTHER_ROWS], "rows of an earlier tick are not reported");
         rows.decide(&choice(9, 8, 3));
         let header = rows.header(Tick(6), "");
         assert_eq!(

@@ -69,7 +69,7 @@ impl State<'_> {
             error: true,
             line: 0,
             message: format!(
-                "{}: the fingers close {:.2} in beside the middle of {object}, which the jaws of the vise hold; {BESIDE} in at \
+                "{}: the fingers close {:.2} in beside the middle of {object}, which the jaws of the vise hold; {SLIP_INCHES} in at \
                  most expected",
                 phase.what,
                 beside.abs()

@@ -79,7 +79,7 @@ fn saved_and_copied_cells_continue(rig: Rig, seed: u64, every: usize) {
             let later = saved.iter().find(|(other, ..)| *other == tick + COMPARED_TICKS);
             assert!(
                 later.is_none_or(|(_, bytes, _)| cell.save().unwrap() == *bytes),
-                "{GOES_ON} ticks after {tick}"
+                "{COMPARED_TICKS} ticks after {tick}"
             );
         }
     }

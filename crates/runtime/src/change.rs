@@ -1,7 +1,7 @@
 //! Changes of a run between two ticks, for experiments with a recorded run ([`crate::repeat`]). A change takes effect
 //! in the next tick and is logged. Changed task data are a new generation, and do not wait for the end of a command.
 
-use plant::fault::{What, text::FaultFile};
+use plant::fault::{FaultSubject, text::FaultFile};
 use taskdata::load::{
     Diagnostics, Source,
     job::{JobLine, Reload},
@@ -54,7 +54,8 @@ impl Run {
 
     /// Enable the faults of a file from the next tick on. On error, the run is unchanged.
     pub fn add_faults(&mut self, faults: &FaultFile, seed: u64) -> Result<(), ChangeError> {
-        let moves = faults.cell.faults.iter().find(|fault| matches!(fault.what, What::PedestalMoved { .. }));
+        let moves =
+            faults.cell.faults.iter().find(|fault| matches!(fault.what, FaultSubject::PedestalMoved { .. }));
         if let Some(fault) = moves {
             return Err(ChangeError::Displaced(fault.number));
         }

@@ -11,7 +11,7 @@ use executive::egm::Peer;
 use field::{Mapping, Presence};
 use interfaces::point::Group;
 use os_io::files;
-use plant::fault::{FaultPlan, What};
+use plant::fault::{FaultPlan, FaultSubject};
 use record::Log;
 
 use sessions::network::Role;
@@ -60,7 +60,7 @@ pub fn check_cuts(
     mapping: Option<&Mapping>,
 ) -> Result<(), StartError> {
     let cut = faults.faults.iter().filter_map(|fault| match &fault.what {
-        What::FieldCut(device) => Some(device),
+        FaultSubject::FieldCut(device) => Some(device),
         _ => None,
     });
     for device in cut {

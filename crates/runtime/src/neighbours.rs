@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use closed_loop::{Desk, JobPlayer, workstation::SimulatedWorkstation};
+use closed_loop::{JobPlayer, StepContext, workstation::SimulatedWorkstation};
 use interfaces::{CommonMemory, DataBaseStatus, DeviceInputs, OutsidePedestal};
 use neighbours::{
     vision::picture::Part,
@@ -25,7 +25,7 @@ use sessions::{
 
 use super::{
     commanded::Commanded,
-    switched::{Around, Switched},
+    switched::{SwitchContext, Switched},
 };
 use crate::{
     config::{ClockKind, RunConfig},
@@ -284,8 +284,8 @@ impl Neighbours {
     }
 
     /// Called once per tick, after controller and cell: all neighbours read the outputs of the tick.
-    pub fn step(&mut self, desk: Desk<'_>) -> Progress {
-        let Desk { tick, memory, inputs, gate, workstation, generations } = desk;
+    pub fn step(&mut self, desk: StepContext<'_>) -> Progress {
+        let StepContext { tick, memory, inputs, gate, workstation, generations } = desk;
         if let Some(data_system) = &mut self.data_system {
             data_system.step(tick, &memory.task.data_base);
             self.events.extend(data_system.refusals().into_iter().map(Event::DataBaseRefuses));
@@ -305,8 +305,11 @@ impl Neighbours {
             WorkstationSource::Switched(switched) => {
                 let data_system = self.network.iter().flat_map(|network| &network.handles);
                 let mut data_system = data_system.filter(|handle| handle.role() == Role::DataSystem);
-                let around =
-                    Around { tick, judge, has_data_system: data_system.all(EndpointHandle::is_connected) };
+                let around = SwitchContext {
+                    tick,
+                    judge,
+                    has_data_system: data_system.all(EndpointHandle::is_connected),
+                };
                 switched.step(&around, gate, workstation, &mut self.events)
             }
         };

@@ -3,7 +3,7 @@
 //! After each tick the states are collected, and the changed ones are logged. This is between two ticks, where
 //! a run may allocate.
 
-use closed_loop::{failure::Failure, field::Desk};
+use closed_loop::{failure::Failure, field::FieldController};
 use couplers::{Orders, Report, Span};
 use executive::memory::cell::ControllerView;
 use field::Device;
@@ -36,7 +36,7 @@ pub struct ViewContext<'a> {
     pub cell: &'a Cell,
     pub has_controller: bool, // the robot controller is that of the cell, not one outside
     pub warning: Option<&'a Failure>, // the last warning on the screen of the robot controller
-    pub field: Option<&'a Desk>,
+    pub field: Option<&'a FieldController>,
 }
 
 #[derive(Default)]
@@ -164,7 +164,7 @@ pub fn controller_state(view: &ControllerView) -> Controller {
     }
 }
 
-fn couplers(desk: &Desk) -> Couplers {
+fn couplers(desk: &FieldController) -> Couplers {
     let words = |words: &[u16], spans: &[Span]| {
         let count = spans.iter().map(Span::words).sum();
         words.iter().take(count).map(|word| u32::from(*word)).collect()

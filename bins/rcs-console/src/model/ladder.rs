@@ -1,7 +1,7 @@
 //! The ladder (VI.6): one line per process and per neighbour, with command, status and row.
 
 use closed_loop::failure;
-use interfaces::{CommonMemory, Header, ProcessId, Said, device::VisionStatus, for_each_process};
+use interfaces::{CommonMemory, CommonStatus, Header, ProcessId, device::VisionStatus, for_each_process};
 use levels::ladder::Ladder;
 use rcs_core::{handshake::Lower, table::Fired, tick::TICK_S};
 
@@ -172,7 +172,7 @@ fn process_line(branch: Branch, process: ProcessId, picture: &Picture, cause: Op
 }
 
 /// The row that fired. The unconfirmed goals of a finished command precede it.
-fn row_text(said: &Said, fired: Option<Fired>) -> String {
+fn row_text(said: &CommonStatus, fired: Option<Fired>) -> String {
     let row = fired.map_or_else(String::new, |fired| fired.text().to_string());
     if said.unconfirmed.is_none() { row } else { format!("unconfirmed: {}; {row}", said.unconfirmed) }
 }

@@ -1,6 +1,6 @@
 //! Draws sections one above the other, in panes that share the height or in one scrolled column.
 
-use interfaces::Said;
+use interfaces::CommonStatus;
 use ratatui::text::Line;
 
 use super::{
@@ -26,7 +26,7 @@ pub fn process(
 ) -> (Vec<Line<'static>>, Reach) {
     let command = picture.command(model.process);
     let command = if command.is_empty() { "no command".to_owned() } else { command };
-    let Said { report, unconfirmed, .. } = picture.memory.said(model.process);
+    let CommonStatus { report, unconfirmed, .. } = picture.memory.said(model.process);
     let (name, number) = (model.process, picture.command_number(model.process));
     let head = format!("{name}: {command}, number {number}, {report}{}", unconfirmed.suffix());
     let filter =

@@ -8,7 +8,7 @@ use interfaces::station::Stepped;
 use levels::ladder::ProcessId;
 use plant::{
     BoxAction, CellDescription, EStop, Key, WorkstationAction,
-    fault::{DisturbanceKind, text::FaultFile},
+    fault::{FaultSubject, text::FaultFile},
 };
 use runtime::{StartError, setup::fault_file};
 
@@ -289,9 +289,8 @@ fn faults(data: &Path, cell: &CellDescription) -> Result<Vec<Kind>, Error> {
 /// The faults of a file; `None` if the file has none that can be limited to a time.
 fn fault(path: &Path, cell: &CellDescription) -> Result<Option<Kind>, Error> {
     let (file, _) = fault_file(path, cell)?;
-    let lasting = |what: &DisturbanceKind| {
-        !what.is_delivery() && !matches!(what, DisturbanceKind::PedestalMoved { .. })
-    };
+    let lasting =
+        |what: &FaultSubject| !what.is_delivery() && !matches!(what, FaultSubject::PedestalMoved { .. });
     let switchable = file.line.is_some() || file.cell.faults.iter().any(|fault| lasting(&fault.what));
     let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(switchable.then(|| Kind::Fault(name, Arc::new(file))))

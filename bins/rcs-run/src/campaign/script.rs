@@ -216,7 +216,7 @@ impl Script {
                 ScriptStep::AirLost(ticks) => {
                     let from = branch.at().0 + 1;
                     let when = When { from, until: from + ticks, ..When::ALWAYS };
-                    let faults = vec![Fault { number: 1, what: fault::DisturbanceKind::AirLost, when }];
+                    let faults = vec![Fault { number: 1, what: fault::FaultSubject::AirLost, when }];
                     let plan = FaultPlan { seed: 0, faults };
                     branch.closed.workstation.cell.add_faults(&plan, branch.facility().seed);
                 }

@@ -18,7 +18,7 @@ use taskdata::files::TaskData;
 use super::{
     BOARDS, Board,
     exchange::{Readers, Writers},
-    lost::{How, LOST_AFTER, Lost, SplitError},
+    lost::{LOST_AFTER, LossReason, Lost, SplitError},
     pulse::{
         BoardReport, Checked, Epochs, Fingerprint, PulseGiver, ReportReader, RunCard, SystemPulse, sleep,
     },
@@ -84,15 +84,15 @@ impl Seat {
         self.child.as_mut().and_then(|child| child.try_wait().ok().flatten())
     }
 
-    const fn lost(&self, tick: Tick, how: How) -> Lost {
+    const fn lost(&self, tick: Tick, how: LossReason) -> Lost {
         Lost { board: self.board, pid: self.report.pid, tick, how }
     }
 
     fn has_stamped(&mut self, tick: Tick) -> Result<bool, Lost> {
         let Some((_, reports)) = &self.ports else { return Ok(false) };
-        let (stamp, report) = reports.read().map_err(|error| self.lost(tick, How::Garbled(error)))?;
+        let (stamp, report) = reports.read().map_err(|error| self.lost(tick, LossReason::Garbled(error)))?;
         if stamp != tick && !report.ready {
-            return Err(self.lost(tick, How::Left));
+            return Err(self.lost(tick, LossReason::Left));
         }
         self.report = report;
         Ok(stamp == tick)
@@ -364,10 +364,10 @@ impl Coordinator {
                 continue;
             }
             if let Some(status) = seat.ended() {
-                return Err(seat.lost(tick, How::Ended(status)));
+                return Err(seat.lost(tick, LossReason::Ended(status)));
             }
             if waited >= LOST_AFTER {
-                return Err(seat.lost(tick, How::Silent));
+                return Err(seat.lost(tick, LossReason::Silent));
             }
             giver.wake();
         }
@@ -377,9 +377,9 @@ impl Coordinator {
         for seat in &mut self.seats {
             seat.times.add(seat.report.step_ns);
             let Some((readers, _)) = &seat.ports else { continue };
-            let garbled = |error| seat.lost(tick, How::Garbled(error));
+            let garbled = |error| seat.lost(tick, LossReason::Garbled(error));
             if !readers.outputs(tick, after).map_err(garbled)? {
-                return Err(seat.lost(tick, How::Unwritten));
+                return Err(seat.lost(tick, LossReason::Unwritten));
             }
             readers.states(tick, &mut self.states).map_err(garbled)?;
         }

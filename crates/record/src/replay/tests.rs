@@ -58,7 +58,7 @@ fn log(case: &Case) -> Vec<u8> {
 fn replayed(log: &Log, case: &Case, length: usize) -> Result<Replayed, String> {
     let options = Options { data: None, from: case.from.map(Tick), until: case.until.map(Tick) };
     let generations = [Store::default()];
-    let stretches = Stretches::new(log, &options, &generations, length);
+    let stretches = ReplayParts::new(log, &options, &generations, length);
     stretches.replay().map_err(|error| error.to_string())
 }
 

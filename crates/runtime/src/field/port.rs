@@ -6,7 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use closed_loop::{ClosedLoop, field::Desk};
+use closed_loop::{ClosedLoop, field::FieldController};
 use couplers::{Fault, Refusal, Report, State};
 use executive::{
     alloc::Section,
@@ -69,7 +69,7 @@ impl FieldPort {
         config: &RunConfig,
         job: &str,
         observer: &mut dyn Observer,
-    ) -> Result<Desk, StartError> {
+    ) -> Result<FieldController, StartError> {
         let (started, limit) = (Instant::now(), Duration::from_secs(config.wait.into()));
         let mut refused_since: Vec<Option<Instant>> = vec![None; self.devices.len()];
         let mut said = Vec::new();
@@ -87,7 +87,7 @@ impl FieldPort {
             }
             if hindrances.is_empty() {
                 self.warn_of_old_packets(observer);
-                let mut desk = Desk::new(Arc::clone(&self.mapping));
+                let mut desk = FieldController::new(Arc::clone(&self.mapping));
                 desk.observe(now, reports.into_iter());
                 desk.begin();
                 return Ok(desk);
@@ -176,7 +176,7 @@ impl FieldPort {
     }
 
     /// Ends all devices at once: writes the final outputs and reads them back. `inputs` are the controller's last.
-    pub fn end(&mut self, desk: &mut Desk, inputs: &DeviceInputs) {
+    pub fn end(&mut self, desk: &mut FieldController, inputs: &DeviceInputs) {
         desk.end();
         for (device, orders) in self.devices.iter_mut().zip(desk.orders()) {
             device.order(orders);

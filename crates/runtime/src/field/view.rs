@@ -1,6 +1,6 @@
 //! The view of the couplers and their points for screens, of a run or of a log.
 
-use closed_loop::field::Desk;
+use closed_loop::field::FieldController;
 use couplers::{InWords, OutWords};
 use executive::memory::{
     Text,
@@ -25,7 +25,7 @@ struct Coupler<'a> {
 
 /// The view of a run after a tick. `inputs` are those of the controller. Does not allocate.
 #[must_use]
-pub fn view_of_run(tick: Tick, desk: &Desk, inputs: &DeviceInputs) -> FieldView {
+pub fn view_of_run(tick: Tick, desk: &FieldController, inputs: &DeviceInputs) -> FieldView {
     let couplers = desk.devices().map(|(_, orders, report, age_ms)| Coupler {
         state: report.state.word(),
         age_ms,

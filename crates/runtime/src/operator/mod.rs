@@ -25,7 +25,7 @@ mod written;
 use std::path::{self, Path};
 
 use closed_loop::{
-    field::{Desk, Field},
+    field::{Field, FieldController},
     workstation::SimulatedWorkstation,
 };
 use interfaces::{
@@ -409,13 +409,13 @@ fn job<'a>(around: &'a mut RequestContext<'_>) -> Result<&'a mut Hwsc, String> {
     around.neighbours.job_under_way()
 }
 
-fn no_device(field: &Desk, name: &str) -> String {
+fn no_device(field: &FieldController, name: &str) -> String {
     let names: Vec<_> = field.mapping().devices.iter().map(|device| device.name.as_str()).collect();
     format!("there is no device {name}; expected one of {}", names.join(", "))
 }
 
 /// The couplers of the run. Errors: a message if the run has no couplers.
-fn field<'a>(around: &'a mut RequestContext<'_>) -> Result<&'a mut Desk, String> {
+fn field<'a>(around: &'a mut RequestContext<'_>) -> Result<&'a mut FieldController, String> {
     let field = around.workstation.field.as_deref_mut();
     field.map(Field::desk_mut).ok_or_else(|| "this run has no couplers: --field".to_owned())
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use closed_loop::field::Desk;
+use closed_loop::field::FieldController;
 use couplers::State;
 use serde::Serialize;
 
@@ -33,7 +33,7 @@ pub struct FieldDevice {
 impl FieldResult {
     /// The result of couplers, with the measurements of couplers over TCP.
     #[must_use]
-    pub fn new(desk: &Desk, simulated: Vec<&'static str>, port: Option<&FieldPort>) -> Self {
+    pub fn new(desk: &FieldController, simulated: Vec<&'static str>, port: Option<&FieldPort>) -> Self {
         let devices = desk.mapping().devices.iter().zip(desk.reports()).map(|(device, report)| FieldDevice {
             name: device.name.clone(),
             exchanges: report.counters.exchanges,

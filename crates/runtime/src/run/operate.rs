@@ -17,7 +17,7 @@ use super::Run;
 use crate::{
     judge::check_job,
     load::{Answer, LoadError, LoadSource},
-    operator::{A_TICK, Around, Input, Later, WORKSTATION},
+    operator::{A_TICK, Input, Later, RequestContext, WORKSTATION},
 };
 
 /// Longest wait for a robot that is coming to rest after a motion by hand. It is less than the second for which the
@@ -53,7 +53,7 @@ impl Run {
                 },
             };
             let desk = self.closed.desk();
-            let mut around = Around {
+            let mut around = RequestContext {
                 tick,
                 memory: desk.memory,
                 inputs: desk.inputs,

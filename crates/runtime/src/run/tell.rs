@@ -20,7 +20,7 @@ use crate::{
     field::view_of_run,
     live::Live,
     resume,
-    views::{Around, commander, job_state},
+    views::{ViewContext, commander, job_state},
 };
 
 impl Run {
@@ -49,7 +49,7 @@ impl Run {
     pub(super) fn show_state(&mut self) {
         let Some(log) = &mut self.log else { return };
         let tick = self.closed.tick();
-        let around = Around {
+        let around = ViewContext {
             tick,
             memory: self.closed.memory(),
             neighbours: &self.neighbours,

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use neighbours::data_system::{Books, Item, Records, Said};
+use neighbours::data_system::{Books, Item, LastStatement, Records};
 
 use super::Store;
 
@@ -52,7 +52,7 @@ proptest! {
                 }
                 Step::Report(number, item) => {
                     let statement = item.position.clone();
-                    let said = Said { number, statement: &statement };
+                    let said = LastStatement { number, statement: &statement };
                     prop_assert_eq!(
                         books.report(client, said, &item).expect("memory does not fail"),
                         Records::report(&mut store, client, said, &item).expect("SQLite works")

@@ -15,7 +15,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use neighbours::data_system::{Item, Records, Said};
+use neighbours::data_system::{Item, LastStatement, Records};
 use rusqlite::{Connection, OptionalExtension as _, Row, TransactionBehavior, params};
 
 use super::alone::DatabaseLock;
@@ -215,7 +215,7 @@ impl Records for Store {
             .map(drop)
     }
 
-    fn report(&mut self, client: &str, said: Said<'_>, item: &Item) -> rusqlite::Result<bool> {
+    fn report(&mut self, client: &str, said: LastStatement<'_>, item: &Item) -> rusqlite::Result<bool> {
         let transaction = self.connection.transaction()?;
         if said.number != 0 {
             let fresh = transaction.execute(
@@ -327,9 +327,19 @@ mod tests {
     #[test]
     fn item_keeps_its_number_and_history() {
         let mut store = Store::in_memory().unwrap();
-        assert!(store.report("H_ROBOT", Said::default(), &item("17", "LINKBAR1_BH", "UNIT_1", 4)).unwrap());
-        assert!(store.report("H_ROBOT", Said::default(), &item("17", "LINKBAR1", "PFIXTURE", 0)).unwrap());
-        assert!(store.report("H_ROBOT", Said::default(), &item("18", "LINKBAR1", "UNIT_1", 1)).unwrap());
+        assert!(
+            store
+                .report("H_ROBOT", LastStatement::default(), &item("17", "LINKBAR1_BH", "UNIT_1", 4))
+                .unwrap()
+        );
+        assert!(
+            store
+                .report("H_ROBOT", LastStatement::default(), &item("17", "LINKBAR1", "PFIXTURE", 0))
+                .unwrap()
+        );
+        assert!(
+            store.report("H_ROBOT", LastStatement::default(), &item("18", "LINKBAR1", "UNIT_1", 1)).unwrap()
+        );
         assert_eq!(
             store.items().unwrap(),
             [item("17", "LINKBAR1", "PFIXTURE", 0), item("18", "LINKBAR1", "UNIT_1", 1)]
@@ -346,33 +356,33 @@ mod tests {
     #[test]
     fn items_without_a_number_are_distinguished_by_name() {
         let mut store = Store::in_memory().unwrap();
-        store.report("H_ROBOT", Said::default(), &item("", "A", "UNIT_1", 1)).unwrap();
-        store.report("H_ROBOT", Said::default(), &item("", "B", "UNIT_1", 2)).unwrap();
-        store.report("H_ROBOT", Said::default(), &item("", "A", "UNIT_2", 3)).unwrap();
+        store.report("H_ROBOT", LastStatement::default(), &item("", "A", "UNIT_1", 1)).unwrap();
+        store.report("H_ROBOT", LastStatement::default(), &item("", "B", "UNIT_1", 2)).unwrap();
+        store.report("H_ROBOT", LastStatement::default(), &item("", "A", "UNIT_2", 3)).unwrap();
         assert_eq!(store.items().unwrap(), [item("", "A", "UNIT_2", 3), item("", "B", "UNIT_1", 2)]);
     }
 
     #[test]
     fn repeated_report_is_stored_once() {
         let mut store = Store::in_memory().unwrap();
-        assert!(store.report("H_ROBOT", Said::default(), &item("17", "A", "UNIT_1", 1)).unwrap());
-        assert!(!store.report("H_ROBOT", Said::default(), &item("17", "A", "UNIT_1", 1)).unwrap());
+        assert!(store.report("H_ROBOT", LastStatement::default(), &item("17", "A", "UNIT_1", 1)).unwrap());
+        assert!(!store.report("H_ROBOT", LastStatement::default(), &item("17", "A", "UNIT_1", 1)).unwrap());
         assert_eq!(history(&store).len(), 1);
     }
 
     #[test]
     fn numbered_message_is_executed_once() {
         let mut store = Store::in_memory().unwrap();
-        let said = |number| Said { number, statement: "A is at UNIT_1" };
+        let said = |number| LastStatement { number, statement: "A is at UNIT_1" };
         assert!(store.report("H_ROBOT", said(7), &item("17", "A", "UNIT_1", 1)).unwrap());
-        assert!(store.report("FOREMAN", Said::default(), &item("17", "A", "UNIT_2", 1)).unwrap());
+        assert!(store.report("FOREMAN", LastStatement::default(), &item("17", "A", "UNIT_2", 1)).unwrap());
         assert!(!store.report("H_ROBOT", said(7), &item("17", "A", "UNIT_1", 1)).unwrap());
         assert_eq!(store.items().unwrap(), [item("17", "A", "UNIT_2", 1)]);
         assert!(
             store.report("H_ROBOT", said(8), &item("17", "A", "UNIT_1", 1)).unwrap(),
             "said anew it is news"
         );
-        let other = Said { number: 8, statement: "A is at UNIT_2" };
+        let other = LastStatement { number: 8, statement: "A is at UNIT_2" };
         assert!(
             store.report("H_ROBOT", other, &item("17", "A", "UNIT_2", 1)).unwrap(),
             "another text is another statement"
@@ -392,7 +402,7 @@ mod tests {
         store.set_session("H_ROBOT", 2).unwrap();
         assert!(
             store
-                .report("H_ROBOT", Said { number: 1, statement: "" }, &item("17", "A", "UNIT_1", 1))
+                .report("H_ROBOT", LastStatement { number: 1, statement: "" }, &item("17", "A", "UNIT_1", 1))
                 .unwrap()
         );
         drop(store);
@@ -422,7 +432,7 @@ mod tests {
         let file = place.path().join("items.db");
         Store::open(&file)
             .unwrap()
-            .report("H_ROBOT", Said::default(), &item("17", "A", "UNIT_1", 1))
+            .report("H_ROBOT", LastStatement::default(), &item("17", "A", "UNIT_1", 1))
             .unwrap();
         assert_eq!(Store::open(&file).unwrap().items().unwrap(), [item("17", "A", "UNIT_1", 1)]);
 
