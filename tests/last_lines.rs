@@ -144,6 +144,6 @@ fn interrupted_run_in_real_time_has_its_times_and_the_last_lines() {
     run.stdout.take().expect("it is piped").read_to_string(&mut output).expect("text");
     run.wait().expect("the run ends");
     assert!(line_of(&output, "LINKBAR1_BH is ") < line_of(&output, "watch "), "{output}");
-    assert!(output.contains("controller ") && output.contains(" slots skipped"), "{output}");
+    assert!(output.contains("controller ") && output.contains(" skipped; allocations"), "{output}");
     assert!(output.contains("slowest "), "{output}");
 }

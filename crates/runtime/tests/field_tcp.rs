@@ -204,6 +204,11 @@ fn resumed_run_keeps_its_outputs_off_and_refuses_unknown_ones() {
     while run.last_tick().0 < 2 * TICKS && run.step() {}
     drop(run);
     assert_eq!(couplers.outputs_of(ARM), 0);
+    let ended = Instant::now();
+    while couplers.stations[ARM].with(|coupler| coupler.fallbacks()) == 0 {
+        assert!(ended.elapsed() < Duration::from_secs(60), "its watchdog fires after each run");
+        thread::sleep(Duration::from_millis(5));
+    }
     // A resumed run needs an operator, who reaches it by the shared memory.
     let resume = RunConfig {
         resume: Some(journal),

@@ -130,7 +130,7 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::C
     let field = arguments
         .field
         .as_ref()
-        .map_or_else(String::new, |field| format!(" --field {}", shell::word(&field.to_string())));
+        .map_or_else(String::new, |field| format!(" --field {}", shell::word(field.to_string())));
     let called = format!("rcs-run campaign {} --seed {}{field}", shell::word(job), arguments.seed);
     let report = CampaignReport::new(&facility.job.name, called, &parent, &results, &met);
     if arguments.json {
