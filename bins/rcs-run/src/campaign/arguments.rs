@@ -28,11 +28,11 @@ pub struct CampaignArguments {
     #[arg(long, value_name = "sim:NAME")]
     pub field: Option<FieldConfig>,
     /// Interruptions, separated by commas: pause, pause-twice, refused, replaced, answer-lost, answer-late,
-    /// answer-damaged, hold, nudge, away, estop, power, held or held:PROCESS, restart or restart:PROCESS, fault or
-    /// fault:FILE, none or all; jog:X:Y:Z (0.01 in), take:PART, move:PART:X:Y, swap:PART:KIND, add:KIND:PLACE:SECTOR,
+    /// answer-damaged, hold, nudge, away, estop, power, power:arm, power:air, held or held:PROCESS, restart or
+    /// restart:PROCESS, fault or fault:FILE, none or all; jog:X:Y:Z (0.01 in), take:PART, move:PART:X:Y, swap:PART:KIND, add:KIND:PLACE:SECTOR,
     /// each with :next or :again for the next command or the one before; with --field also
-    /// outage:DEVICE[/DEVICE][:SECONDS], where robot is the line to the robot controller; with --judge rest also cut, lost or
-    /// lost:PROCESS; hold+35:pause is hold, and pause 35 ticks after it [with --random: all]
+    /// outage:DEVICE, outage:DEVICE:SECONDS or outage:DEVICE/DEVICE:SECONDS, where robot is the line to the robot
+    /// controller; with --judge rest also cut, lost or lost:PROCESS; hold+35:pause is hold, and pause 35 ticks after it [with --random: all]
     #[arg(
         long,
         value_name = "KIND",
